@@ -154,10 +154,38 @@ void BodyScene::add(const ClumpPoses::Clump &clump)
   shaped.push_back(body);
 }
 
-void BodyScene::take_roots()
+BodyNoise::Turns BodyScene::turns(size_t body) const
 {
-  for (const auto &clump : poses.clumps()) rigid.shapes.take_root(poses.shape(clump));
-  if (scene.shells) scene.shells->take_root();
+  const size_t free_ones = shaped.size() - poses.clumps().size();
+  if (body < free_ones) return BodyNoise::STILL;
+  const ClumpShape &is = poses.shape(poses.clumps()[body - free_ones]);
+  if (!scene.shells) return BodyNoise::ALONG;
+  const int rank = rigid.shapes.points(is, *scene.shells).rank;    // sd_multiblob_shape_stand
+  return rank == 0 ? BodyNoise::STILL : rank == 1 ? BodyNoise::OTHERWISE : BodyNoise::ALONG;
+}
+
+sd_bodies BodyScene::undrawn()
+{
+  sd_bodies rest = bodies;
+  if (scene.shells) {
+    of_points_undrawn = of_points;
+    of_points_undrawn.pairs = sd_mobility_apply_rest;
+    rest.apply_ctx = &of_points_undrawn;
+  } else
+    rest.apply = sd_mobility_apply_rest;
+  return rest;
+}
+
+void BodyScene::stand_films()
+{
+  film_arm.assign(3 * (size_t) scene.size() + 3, 0.0);
+  for (const ClumpPoses::Clump &clump : poses.clumps()) {
+    const ClumpShape &is = poses.shape(clump);
+    for (int k = 0; k < is.shape.n; k++) {
+      const size_t row = scene.row_of_member((int) poses.member_of(clump, k));
+      sd_multiply3(clump.pose, is.shape.x + 3 * (size_t) k, &film_arm[3 * row]);
+    }
+  }
 }
 
 /* u = 0: nobody sees anybody */
@@ -181,6 +209,7 @@ void BodyScene::put_together()
   bodies.body = shaped.data();
   bodies.spheres = {n, width, whole.data(), arm.data()};
   bodies.points = {n, width, nullptr, nullptr};
+  bodies.film_arm = film_arm.empty() ? nullptr : film_arm.data();
   bodies.D = resistance.data();
   bodies.apply = sees ? sd_mobility_apply : nobody;
   bodies.apply_ctx = sees ? (void *) scene.mobility() : &alone;

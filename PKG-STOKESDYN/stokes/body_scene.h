@@ -9,6 +9,7 @@
 #define SD_BODY_SCENE_H
 
 #include "ambient.h"
+#include "body_noise.h"
 #include "callback.h"
 #include "clump_poses.h"
 #include "pointers.h"
@@ -53,9 +54,17 @@ class BodyScene : protected LAMMPS_NS::Pointers {
    * empty: nobody's are, or all rest */
   sd_bodies bodies = {};
   std::vector<double> u, velocities;
-  /* The shapes of the bodies in open space, whatever wall they stand at; for noise, with their roots */
+  /* For noise: the bodies of a shape as they are in open space, whatever wall they stand at, and how each
+   * moves the points of it */
   const std::vector<sd_body> &in_open_space() const { return open; }
-  void take_roots();
+  BodyNoise::Turns turns(size_t shaped) const;
+  /* The bodies with the part of their matrix that is not drawn at once, where the engine's divides
+   * (sd_mobility.h). It stands as long as they do. */
+  sd_bodies undrawn();
+  /* Arms of the spheres by the poses of now, where films stand; kept for the bodies that are assembled
+   * until begin_films() says that films stand with their points. */
+  void stand_films();
+  void begin_films() { film_arm.clear(); }
   /* [3 spheres] from the centre of their body */
   const std::vector<double> &arms() const { return arm; }
   /* Those of clumps are the last ones */
@@ -71,7 +80,7 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   const Given &given;
 
   /* for the core, by spheres, by points */
-  std::vector<double> arm, D;
+  std::vector<double> arm, film_arm, D;
   std::vector<int> member, whole, loner;
   std::vector<sd_body> shaped, open;
   /* [bodies] sd_body_known */
@@ -84,7 +93,7 @@ class BodyScene : protected LAMMPS_NS::Pointers {
    * and its second derivatives or nothing */
   std::vector<int> sphere;
   std::vector<double> r, velocity, slope, bend;
-  sd_multiblob_mobility of_points = {};
+  sd_multiblob_mobility of_points = {}, of_points_undrawn = {};
   sd_faces faces = {};
   std::vector<char> whole_shells;
 

@@ -198,13 +198,6 @@ void ClumpShapes::forget_points()
   for (const auto &s : shapes) sd_multiblob_shape_free(&s.second->points);
 }
 
-void ClumpShapes::take_root(const ClumpShape &s) const
-{
-  if (s.body.m > 0) check_blocks(voice, s, sd_body_shape_take_root(&s.body));
-  if (s.points.spheres > 0)
-    check_blocks(voice, s, sd_body_shape_take_root(&s.points.points));
-}
-
 void ClumpShapes::announce(const ClumpShape &s, double seconds) const
 {
   if (comm->me != 0) return;

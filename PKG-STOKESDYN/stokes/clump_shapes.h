@@ -78,9 +78,6 @@ class ClumpShapes : protected LAMMPS_NS::Pointers {
   const sd_multiblob_shape &points(const ClumpShape &shape, const Shells &of) const;
   void forget_points();
 
-  /* Whichever of the two there is, for noise. Error: memory. */
-  void take_root(const ClumpShape &shape) const;
-
   double memory_usage() const;
 
  private:

@@ -95,8 +95,10 @@ void FixStokesDynamicsOverdamped::init()
                                : "";
   if (!scheme_given)
     scheme = noise.on() && !noise.drift(hydrodynamics(), holds).empty() ? MIDPOINT : AB2;
+  const bool deforms = hydrodynamics().ambient.settings.box || fix_like(lmp, "^deform");
+  one_solve = scheme == MIDPOINT && noise.on() && !stress.wanted() && !deforms;
   if (noise.on())
-    noise.init(hydrodynamics(), {adapt.every > 0, scheme == MIDPOINT, holds});
+    noise.init(hydrodynamics(), {adapt.every > 0, scheme == MIDPOINT, one_solve, holds});
   if (scheme == MIDPOINT) refuse_midpoint(hydrodynamics());
 }
 
@@ -323,7 +325,9 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
     push_on(i, pushed);
     spin.look(i, V + 3, F + 3, pushed + 3);
   };
-  if (scheme == MIDPOINT)
+  if (one_solve)
+    find_noisy_velocities(hydro, take);
+  else if (scheme == MIDPOINT)
     begin_midpoint(hydro, take);
   else
     hydro.velocities(take, given());
@@ -388,13 +392,13 @@ double FixStokesDynamicsOverdamped::weight(bool has) const
 
 void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
 {
-  if (scheme != MIDPOINT) advance();
+  if (scheme != MIDPOINT || one_solve) advance();
 }
 
 /* Where those of fix move go is known by now, in whatever order the two fixes stand. */
 void FixStokesDynamicsOverdamped::post_integrate()
 {
-  if (scheme == MIDPOINT) advance();
+  if (scheme == MIDPOINT && !one_solve) advance();
   if (!moved_bits || !atom->omega_flag) return;
   const Hydrodynamics &hydro = hydrodynamics();
   for (int i : hydro.ambient.who()) {
@@ -419,7 +423,9 @@ void FixStokesDynamicsOverdamped::advance()
   hydro.check_prepared();
   displaced = 0.0;
   if (scheme != MIDPOINT && !warned_growth) watch();
-  if (scheme == MIDPOINT)
+  if (one_solve)
+    move_with_noise(hydro);
+  else if (scheme == MIDPOINT)
     move_by_midpoint(hydro);
   else {
     bring_box_to_this_step(lmp);    // first: spheres of a clump may be images across faces that move
@@ -510,7 +516,7 @@ void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps
       const RigidClumps::Body &body = hydro.motion().body(clump);
       const ClumpStep goes = step(c);
       double pose[12];
-      std::copy_n(start.all[c].pose, 12, pose);
+      copy<12>(start.all[c].pose, pose);
       places.resize(3 * (size_t) body.n);
       sd_pose_step(pose, goes.centre, goes.move, body.n, body.shape->shape.x, row + TURN,
                    places.data());

@@ -73,8 +73,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   /* [3] velocity of a free sphere that is in no clump, by which the next step goes: LAMMPS's v is output,
    * and others may write to it */
   AtomRows motion;
-  /* [6] y of a free sphere (noise.h), of its turn only where it has a direction; scheme midpoint:
-   * random force and torque */
+  /* [6] y of a free sphere (noise.h), of its turn only where it has a direction; scheme midpoint in
+   * two solves: random force and torque */
   AtomRows random;
   /* [6] scheme midpoint: force and torque on a sphere in the step before */
   AtomRows load;
@@ -188,6 +188,14 @@ class FixStokesDynamicsOverdamped : public RowsFix {
              const std::vector<double> &V);
   void check_strain(const BoxMotion &flow) const;
   void move_by_midpoint(Hydrodynamics &);
+  /* With noise, decided before a run: by one solve (fix_stokes_dynamics_overdamped_noise.cpp); not where the
+   * fluid goes with the box, or a compute asks for the stress: those are made for random forces and two
+   * solves. */
+  bool one_solve = false;
+  Start start;    // of the step that one solve makes
+  void place(Hydrodynamics &, const Start &start, const Moves &moves, double part);
+  void find_noisy_velocities(Hydrodynamics &, const Solve::Take &take);
+  void move_with_noise(Hydrodynamics &);
   void watch();
   double fastest() const;
   double change_of_velocities() const;

@@ -1,15 +1,17 @@
-/* Of fix stokes_dynamics/overdamped: scheme midpoint, steps that have the drift kT div M of a
- * mobility that differs from place to place, without its derivatives.
+/* Of fix stokes_dynamics/overdamped: scheme midpoint in two solves, of second order without
+ * noise.
  *
- *   F* = F + dt/(2 dt_old) (F - F_old) + sqrt(2 kT/dt) f,   f of covariance M(x)^-1
+ *   F* = F + dt/(2 dt_old) (F - F_old)
  *   v = V(x, F*),  x_mid = x + dt/2 v           where velocities are found: v is output
  *   x' = x + dt V(x_mid, F*)                    where positions advance
  *
- * The noise is a force, the same in both places: then the second-order term of the step has the
- * mean kT div M dt. Kept as a velocity it would have none. Whoever is held, or the plane, is so in
- * the half step too; who is moved as told is half way there, by the mean velocity of the step. The
- * fluid at x_mid is that of the middle of the step.
+ * Whoever is held, or the plane, is so in the half step too; who is moved as told is half way there, by the
+ * mean velocity of the step. The fluid at x_mid is that of the middle of the step.
  * Forces are extrapolated, so that they are found once per step.
+ *
+ * With noise a step is made otherwise (fix_stokes_dynamics_overdamped_noise.cpp), but where the box deforms
+ * with the fluid, or a compute asks for the stress. There the noise is a force, the same in both places: then
+ * the second-order term of the step has the mean kT div M dt. Kept as a velocity it would have none.
  *
  * Where the fluid takes the box along, the step is the same one for coordinates s = H^-1 (x - x_lo) in the
  * edges H of the box, ds/dt = H^-1 (V - u_box), in which the box stands still: x_mid and its images are
@@ -66,16 +68,16 @@ std::vector<double> FixStokesDynamicsOverdamped::random_loads(const Hydrodynamic
 void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Solve::Take &take)
 {
   const int width = hydro.rotation() ? 6 : 3;
-  Solve::Draw draw;
+  Solve::Forces forces;
   if (noise.on())
-    draw = noise.forces(hydro, [this, width](int i, const double *f) {
+    forces = noise.forces(hydro, [this, width](int i, const double *f) {
       std::copy_n(f, width, random.give(i));
     });
   if (noise.on() && stress.wants_low()) {
     hydro.velocities([](int, const double *, const double *) {}, given());
     stress.without_noise(hydro);
   }
-  hydro.velocities(take, given(), noise.on() ? &draw : nullptr);
+  hydro.velocities(take, given(), 0.0, noise.on() ? &forces : nullptr);
   if (noise.on()) stress.begin(hydro, random_loads(hydro));
   dragged.x.assign(3 * (size_t) atom->nlocal + 3, 0.0);
   for (int i : hydro.ambient.who())
@@ -170,9 +172,12 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   for (int i : start.who) std::copy_n(atom->x[i], 3, &there[3 * (size_t) i]);
   hydro.begin(Hydrodynamics::MIDDLE);
   hydro.ambient.half_a_step_back();
-  std::vector<double> pushed = loads(hydro);
-  for (size_t i : start.who)
-    for (size_t d = 0; d < 6 && noise.on(); d++) pushed[6 * i + d] += random[i][d];
+  Given known = given();
+  if (noise.on())
+    known.loads = [this](int i, double *FT) {
+      push_on(i, FT);
+      for (int d = 0; d < 6; d++) FT[d] += random[i][d];
+    };
   hydro.velocities([this, &V, width](int i, const double *v, const double *) {
     std::copy_n(v, width, &V[6 * (size_t) i]);
     keep_in_plane(&V[6 * (size_t) i], 6);
@@ -183,7 +188,7 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   dragged.v.clear();
   for (int i : start.who) load_on(i, load.give(i));
   for (int i : start.lone) {
-    const double *v = &V[6 * (size_t) i];
-    if (!is_held(i)) moves(i, dt * sqrt(sd_dot(v, v)));
+    const double *v = &V[6 * (size_t) i], step[3] = {dt * v[0], dt * v[1], dt * v[2]};
+    if (!is_held(i)) moves(i, step);
   }
 }

@@ -29,7 +29,7 @@ Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
     lubrication(voice, settings.lubrication, settings.shells),
     poses(lmp, scene, ambient, rigid, given), bodies(lmp, scene, ambient, rigid, poses, given),
     guess(lmp, scene, shells, settings, epochs),
-    solver(lmp, scene, bodies, lubrication), guard(voice)
+    solver(lmp, scene, bodies, lubrication, ambient), guard(voice)
 {
 }
 
@@ -62,7 +62,7 @@ void Hydrodynamics::set(const std::vector<std::string> &words)
 void Hydrodynamics::init()
 {
   ambient.init();
-  scene.settings.positive = false;
+  scene.settings.positive = 0.0;
   given.clear();    // it asks a fix that may be gone
   advance();
   prepared.take(epochs.run);
@@ -192,20 +192,21 @@ void Hydrodynamics::solve()
   guess.keep(bodies, given, solver.exerted);
 }
 
-void Hydrodynamics::velocities(const Solve::Take &take, const Given &known, const Solve::Draw *draw)
+void Hydrodynamics::velocities(const Solve::Take &take, const Given &known, double drawn,
+                               const Solve::Forces *forces)
 {
   State::Global &global = memory->global;
   sd_solve_report report = {};
   sd_status status = SD_OK;
   solvers = ambient.who();
   given = known;
-  poses.find();
   if (settings.rigid.apart()) {
+    poses.find();
     poses.velocities(width(), take);
     for (int i : solvers)
       memory->rows.give(i);    // those that have one are known to have moved here
   } else
-    status = find_motions(take, draw, report);
+    status = find_motions(take, drawn, forces, report);
   // v' is none of this: a solve for forces begins from nothing.
   global.last_step = update->ntimestep;
   global.last_solve = -1;
@@ -284,21 +285,21 @@ sd_status Hydrodynamics::find_forces(sd_solve_report &report)
   return status;
 }
 
-/* In one loop, with lubrication in it. New random forces leave nothing to begin from. */
-sd_status Hydrodynamics::find_motions(const Solve::Take &take, const Solve::Draw *draw,
+/* In one loop, with lubrication in it. New random numbers leave nothing to begin from. */
+sd_status Hydrodynamics::find_motions(const Solve::Take &take, double drawn, const Solve::Forces *forces,
                                       sd_solve_report &report)
 {
-  place();
-  bodies.place(width());
-  bodies.assemble();
+  if (drawn == 0.0) bodies.begin_films();
+  assemble();
   if (settings.lubrication.on) {
-    lubrication.place(scene, ambient, draw != nullptr);
+    if (drawn == 0.0) lubrication.place(scene, ambient, forces != nullptr);
     solver.tie_films();
   }
-  if (draw) solver.draw(*draw);
-  const bool warm = guess.recall(bodies, given) && !draw;
+  if (drawn > 0.0) solver.push();
+  if (forces) solver.draw_forces(*forces);
+  const bool warm = guess.recall(bodies, given) && drawn == 0.0 && !forces;
   const sd_status status =
-      solver.run({warm, settings.tolerance, settings.max_iter}, guess, report);
+      solver.run({warm, std::max(settings.tolerance, drawn), settings.max_iter}, guess, report);
   poses.moves(&solver.V[6 * bodies.first_clump()]);
   solver.hand_out(take);
   films_power.clear();

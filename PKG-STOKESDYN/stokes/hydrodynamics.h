@@ -29,6 +29,12 @@
 
 namespace StokesDyn {
 
+/* Velocities or displacements of bodies: U and W of free spheres, [6 nlocal], 0 of others; and of the clumps
+ * of this rank, [6 clumps] */
+struct Moves {
+  std::vector<double> atoms, clumps;
+};
+
 class Hydrodynamics : protected LAMMPS_NS::Pointers {
  public:
   const Voice voice;
@@ -67,8 +73,23 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
   /* Of all that takes part, from its loads, in any order; and forces on those that are held. A step is
    * begin() and this. Where all interact, the forces go to rows of the memory too: the next guess.
-   * draw: random forces too, where all interact */
-  void velocities(const Solve::Take &take, const Given &known, const Solve::Draw *draw = nullptr);
+   * drawn: with the noise of draw(), films as films() has left them, and to this tolerance, or that of the
+   * settings if it is larger; 0: without that. forces: random forces too, where all interact */
+  void velocities(const Solve::Take &take, const Given &known, double drawn = 0.0,
+                  const Solve::Forces *forces = nullptr);
+
+  // --- a step with noise, where all interact (hydrodynamics_noise.cpp): begin(MIDDLE) and one of these at
+  // each place, draw() first, then velocities()
+
+  void draw(const Given &known, const Solve::Draw &draw);
+  Moves half_step_of_points() const { return moves_of(solver.of_points); }
+  Moves half_step_of_films() const { return moves_of(solver.of_films); }
+  /* Is difference() needed, at x + W and x - W with the signs 1 and -1? */
+  bool needs_differences() const { return solver.needs_differences(); }
+  Moves wander(const Solve::Draw &draw) { return moves_of(solver.wander(draw)); }
+  void difference(const Given &known, double sign);
+  void films(const Given &known);
+
   /* Those of rigid clumps, and who is free, since then */
   const ClumpPoses &motion() const { return poses; }
   /* The sphere turns with its clump by the rotation matrix R, and so does the force on it, from
@@ -152,7 +173,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void lubricate();
   void find_films_power();
   sd_status find_forces(sd_solve_report &report);
-  sd_status find_motions(const Solve::Take &take, const Solve::Draw *draw, sd_solve_report &report);
+  sd_status find_motions(const Solve::Take &take, double drawn, const Solve::Forces *forces,
+                         sd_solve_report &report);
+  void assemble();
+  Moves moves_of(const std::vector<double> &V) const;
   void look_at_step(const sd_solve_report &report, bool preconditioned);
   void look_at_shells(const sd_system &system);
   void fit_shells();

@@ -53,7 +53,6 @@ void Hydrodynamics::surround()
   if (standing()) return;
   scene.stand(solvers, ambient);
   scene.turn_shells();
-  if (settings.lubrication.on) scene.surround_films();
   rows_stand.take(epochs.step);
 }
 

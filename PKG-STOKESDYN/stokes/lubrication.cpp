@@ -1,11 +1,14 @@
 #include "lubrication.h"
 
 #include "keywords.h"
+#include "ranks.h"
 
 #include "sd_linear.h"
 #include "sd_lubrication_noise.h"
 #include "sd_multiblob_wall.h"
 #include "sd_wall_film.h"
+
+#include "comm.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,9 +50,46 @@ void Lubrication::provide(double largest, double smallest, bool halves)
     check(sd_films_create(shells.points, shells.one_body, functions.get(), &films));
 }
 
+/* What the core asks of other ranks, of these rows */
+sd_world Lubrication::ranks() const
+{
+  sd_world all = {};
+  all.ctx = const_cast<Lubrication *>(this);
+  all.me = comm->me;
+  all.ranks = comm->nprocs;
+  all.sum = [](void *ctx, double *values, int count) {
+    MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_SUM, static_cast<Lubrication *>(ctx)->world);
+    return SD_OK;
+  };
+  all.refresh = [](void *ctx, const double *rows, double *copies, int width) {
+    return callback([=] { static_cast<Lubrication *>(ctx)->halo.refresh(rows, copies, width); });
+  };
+  all.reduce = [](void *ctx, const double *copies, double *rows, int width) {
+    return callback([=] { static_cast<Lubrication *>(ctx)->halo.reduce(copies, rows, width); });
+  };
+  return all;
+}
+
+void Lubrication::surround(const Scene &where)
+{
+  const size_t n = where.size();
+  const sd_spheres rows = where.local();
+  const Lattice lattice = Lattice::of(domain);
+  x.assign(rows.x, rows.x + 3 * n);
+  a.assign(rows.a, rows.a + n);
+  w.assign(rows.w, rows.w + n);
+  if (!halo.find(lattice, (2.0 + settings.range) * where.largest(), x))
+    voice.fail_one("keyword lubrication: the largest radius, " + text(where.largest()) +
+                   ", reaches more than 1000 images of each sphere and 1e7 in all; is it in other units?");
+  halo.extend(lattice.h, x, {&a, &w});
+  drift.assign(where.drift_of_images() ? 3 * (size_t) halo.count() + 3 : 0, 0.0);
+  if (where.drift_of_images()) halo.place(where.drift_of_images(), nullptr, drift.data());
+}
+
 void Lubrication::place(Scene &where, const Ambient &ambient, bool noisy)
 {
   const bool halves = where.shells && where.shells->halves();
+  surround(where);
   if (where.largest() > 0.0) provide(where.largest(), where.smallest(), halves);
   u = where.rows(6, [&](int i, double *out) { ambient.fluid(i, out); });
   where.drift(u.data(), 6, 1.0);
@@ -57,19 +97,18 @@ void Lubrication::place(Scene &where, const Ambient &ambient, bool noisy)
   scene.functions = functions.get();
   scene.films = shells.on() ? &films : nullptr;
   points.clear();
-  for (int k = 0; k < where.size_with_copies() && halves; k++)
-    points.push_back(where.shells->points(where.local().a[k]));
+  for (size_t k = 0; k < a.size() && halves; k++) points.push_back(where.shells->points(a[k]));
   scene.points = halves ? points.data() : nullptr;
   scene.gap = settings.gap;
   scene.range = settings.range;
   scene.n = where.size();
-  scene.n_all = where.size_with_copies();
-  scene.spheres = where.local();
+  scene.n_all = (int) a.size();
+  scene.spheres = {x.data(), a.data(), w.data()};
   scene.body = where.all_molecules().data();
   scene.u = u.data();
-  scene.drift = where.drift_of_copies();
+  scene.drift = drift.empty() ? nullptr : drift.data();
   scene.noisy = noisy;
-  scene.world = where.ranks();
+  scene.world = ranks();
   check(sd_lubrication_place(&near, &scene));
   const Boundary &boundary = where.settings.boundary;
   for (int k = 0; k < boundary.walls; k++) add_wall(where, boundary.wall[k]);
@@ -145,15 +184,13 @@ static int draw_pair(void *ctx, int i, int at, double g[12])
   return first;
 }
 
-sd_status Lubrication::draw(Scene &where, const sd_random_key &key, double *F) const
+sd_status Lubrication::draw(const Scene &where, const sd_random_key &key, double *F) const
 {
   const size_t n = where.size();
-  Pairs pairs = {key, std::vector<double>((size_t) where.size_with_copies() + 1), where.local().x,
-                 Lattice::of(domain)};
+  Pairs pairs = {key, std::vector<double>(a.size() + 1), x.data(), Lattice::of(domain)};
   for (size_t k = 0; k < n; k++) pairs.tags[k] = ubuf(where.tag((int) k)).d;
   if (near.n_all > near.n) {
-    const sd_status status = Scene::refresh(&where, pairs.tags.data(), &pairs.tags[n], 1);
-    if (status != SD_OK) return status;
+    halo.refresh(pairs.tags.data(), &pairs.tags[n], 1);
   }
   return sd_lubrication_noise(&near, draw_pair, &pairs, F);
 }
@@ -166,7 +203,7 @@ void Lubrication::forces(const double *v, double *out)
 
 double Lubrication::memory_usage() const
 {
-  return sizeof(double) * (14.0 * near.count + 64.0 * near.n_all);
+  return sizeof(double) * (14.0 * near.count + 70.0 * near.n_all) + halo.memory_usage();
 }
 
 }    // namespace StokesDyn

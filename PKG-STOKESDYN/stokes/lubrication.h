@@ -1,5 +1,8 @@
 /* Lubrication between the spheres of a step (sd_lubrication.h), and between them and a wall
- * (sd_wall_film.h, sd_multiblob_wall.h): LAMMPS's atoms to the core. */
+ * (sd_wall_film.h, sd_multiblob_wall.h): LAMMPS's atoms to the core.
+ *
+ * Films have a halo of their own, since with noise they stand elsewhere than the engine's points
+ * (hydrodynamics_noise.cpp); what it holds is as the rows stood in place(). */
 #ifndef SD_STOKES_LUBRICATION_H
 #define SD_STOKES_LUBRICATION_H
 
@@ -27,12 +30,12 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   const Shells::Settings &shells;
 
   Lubrication(const Voice &voice, const Settings &settings, const Shells::Settings &shells) :
-      Pointers(voice.lmp), settings(settings), shells(shells), voice(voice)
+      Pointers(voice.lmp), settings(settings), shells(shells), voice(voice), halo(world)
   {
   }
 
-  /* The rows of the scene where they stand now, with the films' surroundings, in the fluid of this
-   * step, on all ranks. noisy: random forces will be drawn. Error: radii that are too different. */
+  /* The rows of the scene where they stand now, and copies around them, in the fluid of this step, on
+   * all ranks. noisy: random forces will be drawn. Error: radii that are too different. */
   void place(Scene &scene, const Ambient &ambient, bool noisy = false);
   /* Since then */
   sd_lubrication *matrix() { return &near; }
@@ -41,7 +44,7 @@ class Lubrication : protected LAMMPS_NS::Pointers {
 
   /* F [6 n] += random forces on the spheres, of covariance L, where they were placed so; on all
    * ranks together. SD_OK or that of sd_lubrication_noise.h */
-  sd_status draw(Scene &scene, const sd_random_key &key, double *F) const;
+  sd_status draw(const Scene &scene, const sd_random_key &key, double *F) const;
 
   double memory_usage() const;
 
@@ -53,7 +56,12 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   sd_films films = {};
   std::vector<double> u;
   std::vector<int> points;
+  /* rows, then copies; velocities of the copies beyond those of their spheres */
+  Halo halo;
+  std::vector<double> x, a, w, drift;
 
+  sd_world ranks() const;
+  void surround(const Scene &where);
   void add_wall(const Scene &where, const sd_wall &wall);
   void provide(double largest, double smallest, bool halves);
   void check(sd_status status) const;

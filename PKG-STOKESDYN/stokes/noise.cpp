@@ -168,8 +168,34 @@ void Noise::draw_together(Hydrodynamics &hydro, size_t width, const Take &take)
   hydro.scene.to_atoms((int) width, y.data(), take);
 }
 
+Solve::Draw Noise::slip(const Hydrodynamics &hydro)
+{
+  find_temperature(hydro);
+  const auto told = [this](sd_status status, const sd_noise_report &report, bool in_parts) {
+    last = report;
+    divided = in_parts;
+    if (status != SD_OK) no_root(status);
+  };
+  const auto not_positive = [this] {
+    if (!told_of_whole)
+      voice.at_step().warn("keyword temperature: the near part of the periodic sum has a negative mode; here the "
+                           "noise is made with the whole matrix, which takes more products");
+    told_of_whole = true;
+  };
+  return {&of_bodies,
+          key(SD_RANDOM_SPHERE),
+          key(SD_RANDOM_FILM),
+          key(SD_RANDOM_GRID),
+          key(SD_RANDOM_DIFFERENCE),
+          tolerance / 3.0,
+          scale(1.0 / update->dt),
+          kT,
+          told,
+          not_positive};
+}
+
 /* Of a third of the tolerance: slow modes of forces are off by more than those of velocities. */
-Solve::Draw Noise::forces(const Hydrodynamics &hydro, const Take &take)
+Solve::Forces Noise::forces(const Hydrodynamics &hydro, const Take &take)
 {
   find_temperature(hydro);
   divided = false;
@@ -270,7 +296,10 @@ void Noise::init(Hydrodynamics &hydro, const Ways &ways)
   temperature.init(lmp);
   refuse(hydro, ways);
   midpoint = ways.midpoint;
-  hydro.scene.settings.positive = !midpoint;
+  const bool addition = hydro.settings.shells.on() && hydro.settings.shells.one_body;
+  const double positive = addition ? SD_EWALD_POSITIVE_ADDITION : SD_EWALD_POSITIVE;
+  hydro.scene.settings.positive = midpoint && !ways.one_solve ? 0.0 : positive;
+  told_of_whole = false;
 }
 
 }    // namespace StokesDyn

@@ -1,8 +1,9 @@
 /* Brownian motion for fix stokes_dynamics/overdamped: the random part of a step of all spheres and
- * lone clumps, with the mobility that velocities follow from, or random forces with the resistance.
+ * lone clumps, with the mobility that velocities follow from, or a random slip of all points.
  *
  *   step = sqrt(2 kT dt) y,     y of covariance M           where the mobility has no drift
- *   force = sqrt(2 kT/dt) f,    f of covariance R = M^-1    scheme midpoint
+ *   slip = sqrt(2 kT/dt) y,     y of covariance M'          scheme midpoint (solve.h)
+ *   force = sqrt(2 kT/dt) f,    f of covariance R = M^-1    the same, in boxes that deform or for the stress
  *
  * Numbers are drawn where velocities are found, at the positions of that moment, and depend on atom
  * IDs, the step and the seed alone: nothing is kept for restarts, and a second setup draws the
@@ -38,7 +39,8 @@ class Noise : protected LAMMPS_NS::Pointers {
   /* What else the fix does. midpoint: steps that have the drift of the mobility (forces(), below);
    * holds: the keyword that holds somebody, or nothing */
   struct Ways {
-    bool adapts, midpoint;
+    /* midpoint: with one solve, or with random forces in two */
+    bool adapts, midpoint, one_solve;
     std::string holds;
   };
   /* What makes a drift, as errors name it; empty: nothing does, and ab2 and euler are right */
@@ -54,9 +56,13 @@ class Noise : protected LAMMPS_NS::Pointers {
    * mobility without a root. */
   using Take = std::function<void(int i, const double *y)>;
   void draw(Hydrodynamics &hydro, size_t width, const Take &take);
-  /* For a solve of this step, in scheme midpoint: random forces and torques on all spheres, whose
-   * covariance is the resistance of all that moves, 2 kT/dt times. Errors as of draw(). */
-  Solve::Draw forces(const Hydrodynamics &hydro, const Take &take);
+  /* For the solve of this step, in scheme midpoint. Errors as of draw(). */
+  Solve::Draw slip(const Hydrodynamics &hydro);
+  /* For both solves of a step without that: random forces and torques on all spheres, whose covariance is the
+   * resistance of all that moves, 2 kT/dt times. Errors as of draw(). */
+  Solve::Forces forces(const Hydrodynamics &hydro, const Take &take);
+  /* To which that solve is made: slow modes of velocities are off by less than those of the root */
+  double tolerance_of_solve() const { return tolerance / 3.0; }
   /* sqrt(2 kT dt) for a step dt from there */
   double scale(double dt) const;
   /* kT of this step */
@@ -84,8 +90,8 @@ class Noise : protected LAMMPS_NS::Pointers {
   std::vector<double> D, w, y;
   /* by a matrix in two parts (sd_mobility.h) */
   bool divided = false;
-  /* noise is a force */
-  bool midpoint = false;
+  /* noise is a slip; a part that should be positive was not, and the user knows */
+  bool midpoint = false, told_of_whole = false;
 
   sd_random_key key(sd_random_purpose what) const;
   void refuse(const Hydrodynamics &hydro, const Ways &ways) const;

@@ -91,14 +91,6 @@ void Scene::drift(double *rows, int width, double sign) const
       sd_add_edges(signed_jumps, &whole.steps[3 * m], rows + width * (size_t) row_of[m]);
 }
 
-const double *Scene::drift_of_copies()
-{
-  if (!jumping) return nullptr;
-  of_copies.resize(3 * (size_t) halo.count() + 3);
-  halo.place(jumps, nullptr, of_copies.data());
-  return of_copies.data();
-}
-
 sd_status Scene::refresh(void *ctx, const double *rows, double *copies, int width)
 {
   return callback([=] { static_cast<Scene *>(ctx)->halo.refresh(rows, copies, width); });
@@ -118,11 +110,6 @@ void Scene::surround(double reach, const std::string &keyword)
   halo.extend(lattice.h, x, {&a, &w});
 }
 
-void Scene::surround_films()
-{
-  surround(settings.films * most, "lubrication: the largest radius, " + text(most));
-}
-
 // --- who sees whom -------------------------------------------------------------------------------
 
 void Scene::update(const std::vector<int> &who, const Ambient &ambient)
@@ -134,16 +121,13 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
     if (view() == SD_VIEW_NEAR) {
       const double count = ewald.count + second_level.count;
       somebody_sees = count > (ewald.box.periodic || settings.boundary.walled() ? 0.0 : 1.0);
-      if (somebody_sees || settings.films > 0.0)
-        surround(std::max(ewald.reach + 2.0 * extent(most), settings.films * most),
-                 "far_field: the largest radius, " + text(most));
       if (!somebody_sees) return;
+      surround(ewald.reach + 2.0 * extent(most), "far_field: the largest radius, " + text(most));
       tell();
       place(size_with_copies());
     } else {
       gather();
       somebody_sees = (shells ? n_all > 0 : n_all > 1) || (settings.boundary.walled() && n_all > 0);
-      if (settings.films > 0.0) surround_films();
       place(n_all);
     }
     return;
@@ -346,7 +330,7 @@ double Scene::memory_usage() const
 {
   return sizeof(int) * ((double) candidates.room + pairs.room + row_of.capacity()) +
       sizeof(double) *
-      (x.capacity() + a.capacity() + w.capacity() + of_copies.capacity() + 5.0 * n_all) +
+      (x.capacity() + a.capacity() + w.capacity() + 5.0 * n_all) +
       2.0 * sizeof(int64_t) * (double) tags.capacity() + halo.memory_usage() +
       whole.memory_usage();
 }

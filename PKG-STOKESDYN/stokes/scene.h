@@ -4,8 +4,7 @@
  * Where clumps must be whole (Settings::whole) those of a clump are all on the rank that owns it,
  * side by side (whole_clumps.h), after the lone spheres of this rank; else every rank has the rows
  * of its own atoms. Atoms that take no part have none, so they cost nothing. Around the rows stand
- * copies of those that are near, of other ranks and images (halo.h): one halo for engine and films
- * alike. */
+ * copies of those that are near, of other ranks and images (halo.h). */
 #ifndef SD_SCENE_H
 #define SD_SCENE_H
 
@@ -57,16 +56,14 @@ class Scene : protected LAMMPS_NS::Pointers {
     bool rotation = false;    // vectors have force and torque, 6 numbers an atom
     /* clumps must be whole: they are rigid, or their spheres see each other and nobody else */
     bool whole = false;
-    /* films reach so far, in largest radii, centre to centre; 0: there are none */
-    double films = 0.0;
     Boundary boundary;    // walls and periods
     /* how everybody sees everybody: all pairs, Ewald sums, or what costs less */
     enum { AUTO, DIRECT, EWALD };
     int far_field = AUTO;
     /* error of a product by Ewald sums over the rms of F/(6 pi eta a) */
     double far_field_tolerance = 0.0;
-    /* periodic sums are split into two positive parts, for noise */
-    bool positive = false;
+    /* periodic sums are split into two positive parts, for noise: sd_ewald_choose_positive; 0: not so */
+    double positive = 0.0;
     bool everybody() const { return std::isinf(cutoff) && !clumps_only; }
   } &settings;
 
@@ -94,8 +91,6 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* The atoms of this rank that take part, in the fluid of this step: the rows, and where they
    * stand. whole stands already. */
   void stand(const std::vector<int> &who, const Ambient &ambient);
-  /* Copies around the rows, out to the films' reach; update() does the same for the engine. */
-  void surround_films();
   /* The same, and the engine's pairs: anew if LAMMPS has re-neighboured, or if the spheres are
    * others than before on any rank. */
   void update(const std::vector<int> &who, const Ambient &ambient);
@@ -144,8 +139,9 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* Rows [width n] that begin with velocities, from those of atoms to those of the images that the
    * rows stand for; sign -1: back */
   void drift(double *rows, int width, double sign) const;
-  /* The same of copies, beyond their rows: [3 copies]; nullptr: there is none */
-  const double *drift_of_copies();
+  /* By how much the velocity of an image grows with each edge of the box, in the order of Lattice::h;
+   * nullptr: not at all */
+  const double *drift_of_images() const { return jumping ? jumps : nullptr; }
 
   /* Rows and copies */
   int size_with_copies() const { return (int) a.size(); }
@@ -221,7 +217,6 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* by how much the velocity of an image grows with each edge of the box: Ambient::jumps */
   double jumps[6] = {0.0};
   bool jumping = false;
-  std::vector<double> of_copies;
   Halo halo, halo_of_points;
   Owned<sd_neighbors, sd_neighbors_free> candidates, pairs;
 

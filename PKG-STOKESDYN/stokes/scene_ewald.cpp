@@ -104,8 +104,9 @@ bool Scene::split()
   sd_status status;
   if (wall.sign)
     status = sd_ewald_choose_at_wall(&box, &wall, &sizes, tolerance, &ewald);
-  else if (settings.positive && box.periodic)
-    status = sd_ewald_choose_positive(&box, &sizes, width(), tolerance, &ewald);
+  else if (settings.positive > 0.0 && box.periodic)
+    status =
+        sd_ewald_choose_positive(&box, &sizes, width(), tolerance, settings.positive, &ewald);
   else
     status = sd_ewald_levels_choose(&box, &sizes, width(), tolerance, &ewald, &second_level);
   ewald.box = box;

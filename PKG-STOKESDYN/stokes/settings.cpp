@@ -38,7 +38,6 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   if (shells.on() && !in.given("lubrication_range")) lubrication.range = 1.0;
   rigid.rotation = scene.rotation;
   scene.whole = rigid.on || (scene.clumps_only && std::isinf(scene.cutoff));
-  if (lubrication.on) scene.films = 2.0 + lubrication.range;
   in.require(!scene.rotation || scene.tensor != SD_TENSOR_OSEEN,
              "keyword rotation: yes is not available with tensor oseen, whose point forces do not "
              "rotate");

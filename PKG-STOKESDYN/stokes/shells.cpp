@@ -97,14 +97,6 @@ int Shells::kind(double a) const
   return kind;
 }
 
-void Shells::take_root()
-{
-  for (const auto &shape : lone) {
-    const sd_status status = sd_body_shape_take_root(&shape->points);
-    if (status != SD_OK) voice.of("keyword multiblob").fail_one(sd_status_string(status));
-  }
-}
-
 void Shells::find(int n, const double *a, Places &places) const
 {
   places.kind.resize(n + 1);

@@ -71,8 +71,6 @@ class Shells : protected LAMMPS_NS::Pointers {
   const sd_multiblob_shape &free_sphere(int kind) const { return *lone[kind]; }
   const sd_faces_pattern *faces() const { return patterns.data(); }
   const sd_squirmer &squirmer(int kind) const { return swimmers[kind]; }
-  /* Its root, for noise. Error: memory. */
-  void take_root();
   int points(double a) const { return model_of(a).n; }
   /* How far points reach from the centre of a sphere, and their radius */
   double extent(double a) const { return model_of(a).radius * a; }

@@ -9,15 +9,16 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-Solve::Solve(LAMMPS *lmp, Scene &scene, BodyScene &bodies, Lubrication &lubrication) :
-    Pointers(lmp), preconditioner(lmp, scene), scene(scene), bodies(bodies), lubrication(lubrication)
+Solve::Solve(LAMMPS *lmp, Scene &scene, BodyScene &bodies, Lubrication &lubrication, const Ambient &ambient) :
+    Pointers(lmp), preconditioner(lmp, scene), scene(scene), bodies(bodies), lubrication(lubrication),
+    ambient(ambient)
 {
 }
 
 double Solve::memory_usage() const
 {
   double numbers = (double) room;
-  for (const auto *array : {&exerted, &v, &V, &F, &drag, &spin, &work})
+  for (const auto *array : {&exerted, &v, &V, &F, &drag, &spin, &work, &slip, &pushed, &wandering})
     numbers += (double) array->capacity();
   return sizeof(double) * numbers + preconditioner.memory_usage();
 }
@@ -64,28 +65,6 @@ void Solve::tie_films()
 {
   tie.L = lubrication.matrix();
   bodies.bodies.tie = &tie;
-}
-
-/* By the numbers of each sphere, those of its points one after the other */
-void Solve::draw(const Draw &draw)
-{
-  const sd_bodies &A = bodies.bodies;
-  const size_t n = scene.size();
-  std::vector<double> w(sd_bodies_rows(&A) + 1), pushed(sd_bodies_loads(&A) + bodies.width);
-  bodies.take_roots();
-  double *next = w.data();
-  for (size_t k = 0; k < n; k++) {
-    const int m = scene.shells ? 3 * scene.shells->points_of_row(k) : bodies.width;
-    sd_random_normals(&draw.of_spheres, scene.tag((int) k), m, next);
-    next += m;
-  }
-  sd_noise_report report = {};
-  sd_status status = sd_bodies_draw(draw.noise, &A, bodies.in_open_space().data(), w.data(),
-                                    draw.tolerance, pushed.data(), &report);
-  if (status == SD_OK && A.tie) status = lubrication.draw(scene, draw.of_films, pushed.data());
-  draw.report(status, report);
-  for (size_t j = 0; j < (size_t) bodies.width * n; j++) bodies.F[j] += pushed[j] *= draw.scale;
-  scene.to_atoms(bodies.width, pushed.data(), draw.take);
 }
 
 // --- points whose velocities are given -------------------------------------------------------------

@@ -9,6 +9,7 @@
 #ifndef SD_STOKES_SOLVE_H
 #define SD_STOKES_SOLVE_H
 
+#include "body_noise.h"
 #include "body_scene.h"
 #include "callback.h"
 #include "guess.h"
@@ -18,6 +19,7 @@
 #include "scene.h"
 
 #include "sd_bodies_noise.h"
+#include "sd_drifter.h"
 #include "sd_random.h"
 #include "sd_solve.h"
 #include "sd_tie.h"
@@ -30,7 +32,7 @@ namespace StokesDyn {
 
 class Solve : protected LAMMPS_NS::Pointers {
  public:
-  Solve(LAMMPS_NS::LAMMPS *lmp, Scene &, BodyScene &, Lubrication &);
+  Solve(LAMMPS_NS::LAMMPS *lmp, Scene &, BodyScene &, Lubrication &, const Ambient &);
   Preconditioner preconditioner;
 
   struct How {
@@ -54,18 +56,44 @@ class Solve : protected LAMMPS_NS::Pointers {
 
   /* Lubrication, which has been placed, in the loop */
   void tie_films();
-  /* Random forces of covariance R, the resistance of all bodies with their films
-   * (sd_bodies_noise.h), times `scale`, and what becomes of them: forces and torques F [width] on
-   * atom i */
+
+  // --- noise: a slip of the points and forces of films, as they are kept for the solve of a step
+
   struct Draw {
+    sd_bodies_noise *noise;
+    /* numbers of the points, of films, of waves, of differences */
+    sd_random_key of_spheres, of_films, of_waves, of_differences;
+    /* that of the root; sqrt(2 kT/dt); kT; over the drag of a sphere, how far differences go */
+    double tolerance, scale, kT;
+    /* the process ends so, and of which matrix the root is; a failure must not come back */
+    std::function<void(sd_status status, const sd_noise_report &report, bool divided)> report;
+    /* the near part is not positive, and the root is that of the whole matrix */
+    std::function<void()> not_positive;
+  };
+  /* Random slip y of covariance 2 kT/dt M' (sd_bodies_noise.h) and forces of films, where the bodies stand
+   * and are tied; and the half steps of sd_drifter.h: velocities [6 bodies]. On all ranks together. */
+  void draw(const Draw &draw);
+  std::vector<double> of_points, of_films;
+  /* Without one solve: random forces and torques of covariance R, the resistance of all bodies with their
+   * films, times `scale`, and what becomes of them: forces and torques F [width] on atom i */
+  struct Forces {
     sd_bodies_noise *noise;
     sd_random_key of_spheres, of_films;
     double tolerance, scale;
     std::function<void(int i, const double *F)> take;
-    /* the process ends so; a failure must not come back */
     std::function<void(sd_status status, const sd_noise_report &report)> report;
   };
-  void draw(const Draw &draw);
+  void draw_forces(const Forces &draw);
+  /* After draw(): does the mean of a solve have all of the drift? Otherwise it lacks
+   *   slip    kT sum_k (d_k M') A_k  =  <[M'(x + e W) - M'(x - e W)] A W> kT/(2 e)
+   *   torque -kT sum_k (d_k K)^T A_k    likewise,      W [6 bodies] random, of variance 1 or e
+   * the same on all ranks. wander(): e W, for a draw; difference(): the bodies have been assembled at
+   * x + sign e W. */
+  bool needs_differences() const { return differs; }
+  std::vector<double> wander(const Draw &draw);
+  void difference(double sign);
+  /* The bodies have been assembled for the solve: u and F with what was drawn. */
+  void push();
 
   /* The rows of spheres that are points, for the solvers of these; of shells their drags alone count */
   sd_system system();
@@ -76,16 +104,28 @@ class Solve : protected LAMMPS_NS::Pointers {
   Scene &scene;
   BodyScene &bodies;
   Lubrication &lubrication;
+  const Ambient &ambient;
   Owned<sd_tie, sd_tie_free> tie;
 
   /* by spheres: force of the fluid, what system() points to; scratch of sd_bodies */
   std::vector<double> F, drag, spin, work;
+  /* what was drawn: by rows, by spheres; A W by rows, e and kT of it */
+  BodyNoise shapes;
+  std::vector<double> slip, pushed, wandering;
+  std::vector<const sd_body_follow *> follow;
+  bool differs = false;
+  double reach = 0.0, kT = 0.0;
   /* scratch of sd_solve, not filled: parts that it does not need take no memory */
   std::unique_ptr<double[]> scratch;
   size_t room = 0;
 
   double *make_room();
   void take_forces();
+  std::vector<double> numbers(const sd_random_key &of_spheres) const;
+  void draw_slip(const Draw &draw);
+  void find_followers();
+  void add_own();
+  sd_drifter drifter() const { return {bodies.in_open_space().data(), follow.data()}; }
 };
 
 }    // namespace StokesDyn

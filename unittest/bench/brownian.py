@@ -5,7 +5,8 @@
 
 A step of N spheres (100 000) in a periodic box at volume fraction PHI (0.2) to 1e-3, with a temperature and without, in one process:
 processor time, products of the near part and their ratio. noise_tolerance 0.01. MODEL: words of the pair style, "multiblob 12 lubrication
-yes": then a step has two solves and the root of all bodies (scheme midpoint)."""
+yes": then a step has one solve with a random slip of the points (scheme midpoint), and its time is also given over that of one product,
+which is what a sharper solve takes more for each product more."""
 import resource
 import sys
 import tempfile
@@ -42,8 +43,12 @@ def main():
     n, steps, phi, model = (kind(word) for kind, word in zip((int, int, float, str), given))
     still, (_, alone) = seconds(n, steps, phi, "", model)
     moving, (products, solve) = seconds(n, steps, phi, "temperature 1 7", model)
+    if model:
+        (sharp, (_, many)), (loose, (_, few)) = (seconds(n, 1, phi, "", f"{model} warm_start no relative_tolerance {tol}") for tol in (1e-7, 1e-2))
+        print(f"a product {(sharp - loose) / (many - few):.4f} s ({many:.0f} and {few:.0f} of them); a step with Brownian motion is "
+              f"{moving * (many - few) / (sharp - loose):.1f} products")
     print(f"{n} spheres, phi {phi}: {still:.4f} s a step, with Brownian motion {moving:.4f} s, {moving / still:.2f} times as much; "
-          f"{products:.0f} products of the {'root, and the second solve' if model else 'near part; the solve'} {solve:.0f} ({alone:.0f} without)")
+          f"{products:.0f} products of the near part; the solve {solve:.0f} ({alone:.0f} without)")
 
 
 if __name__ == "__main__":

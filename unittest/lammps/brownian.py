@@ -74,6 +74,7 @@ def in_clumps():
 
 
 MOVE = "fix move all stokes_dynamics/overdamped temperature {} {}"
+TIGHT = " noise_tolerance 3e-12"    # of the root, and of the solve with noise
 
 
 def script(folder, way, runs, newton="on", T="v_T", seed=7):
@@ -81,8 +82,8 @@ def script(folder, way, runs, newton="on", T="v_T", seed=7):
     boundary, make, words, options = way
     lines = input_lines(make(), words, os.path.join(str(folder), "spheres.data"), fix=False, boundary=boundary, newton=newton, dt=0.02,
                         box=[(0.0, 18.0)] * 3 if boundary[0] == "p" else [(-60.0, 60.0)] * 3)
-    return lines + ["variable T equal 1.5+step/100", "variable fx atom 0.3*sin(id)", "fix pull all addforce v_fx 0 -2",
-                    (MOVE.format(T, seed) if T is not None else MOVE.split(" temp")[0]) + options] + runs
+    move = MOVE.format(T, seed) + options if T is not None else MOVE.split(" temp")[0] + options.replace(TIGHT, "")
+    return lines + ["variable T equal 1.5+step/100", "variable fx atom 0.3*sin(id)", "fix pull all addforce v_fx 0 -2", move] + runs
 
 
 def end(folder, lines, ranks=1):

@@ -3,7 +3,7 @@ Covariance of one step against the mobility, Boltzmann's distribution, one run o
 import numpy as np
 import pytest
 
-from brownian import A, END, ETA, KT, SHORT, UNIT, check_covariance, check_pieces, check_ranks, end, in_a_plane, noise, script, steps_of
+from brownian import A, END, ETA, KT, SHORT, TIGHT, UNIT, check_covariance, check_pieces, check_ranks, end, in_a_plane, noise, script, steps_of
 from system import Spheres
 
 INF = f"cut_off_distance inf visc {ETA} relative_tolerance 1e-6"
@@ -130,6 +130,30 @@ def test_bonds_between_spheres_with_films_have_boltzmanns_length(simulation, wor
     assert r.var() == pytest.approx(variance, rel=4 * np.sqrt(2 / n) + 0.01)
 
 
+def test_stiff_bond_between_multiblobs_with_a_film_has_boltzmanns_length(simulation):
+    """A gap of 0.15 and a standard deviation of 0.04 radii, in steps of 0.2 over the rate of the bond. Without the drift the mean is 0.16
+    sigma too short; the scheme's own error is 0.02 sigma of the mean and 5 % of the variance (noise-faster.md 1.2)."""
+    count, k, r0, runs = 8, 625 * KT / A**2, 2.15, 400
+    origin = np.array([(p, q, r) for p in (0, 30) for q in (0, 30) for r in (0, 30)], float)
+    x = (origin[:, None] + A * np.array([(0, 0, 0), (r0, 0, 0)])).reshape(-1, 3)
+    make = lambda dt: simulation(Spheres(x, A, bonds=[(2 * i + 1, 2 * i + 2) for i in range(count)]),
+                                 f"cut_off_distance inf visc {ETA} multiblob 12 lubrication yes", fix=False, dt=dt, box=[(-90.0, 120.0)] * 3)
+    apart = make(SHORT).commands(["variable f atom (id%2)*2-1", "fix push all addforce v_f 0 0", "fix move all stokes_dynamics/overdamped"]).run(0)
+    rate = k * (apart.v[0, 0] - apart.v[1, 0])
+    sim = make(0.2 / rate)
+    sim.commands(["bond_style harmonic", f"bond_coeff 1 {k / 2!r} {r0 * A!r}", "comm_modify cutoff 8"])
+    noise(sim).run(60)
+    lengths = []
+    for _ in range(runs):
+        sim.run(5, "pre no post no")
+        x = sim.x.reshape(-1, 2, 3)
+        lengths.append(np.linalg.norm(x[:, 1] - x[:, 0], axis=1) / A)
+    mean, variance = boltzmann(625, r0)
+    r, n = np.array(lengths), runs * count * 0.5
+    assert (r.mean() - mean) / np.sqrt(variance) == pytest.approx(0.02, abs=3 / np.sqrt(n))
+    assert r.var() == pytest.approx(1.04 * variance, rel=3 * np.sqrt(2 / n) + 0.01)
+
+
 # --- one run, in whatever pieces and on however many ranks ------------------------------------------------------------------
 
 def close_spheres(n=10, side=18.0, seed=4):
@@ -160,11 +184,11 @@ def above_a_wall():
 
 SHARP = "cut_off_distance inf visc 1.1 relative_tolerance 1e-12 far_field_tolerance 1e-4 max_iter 400"
 CLOSE = 1e-9, 1e-8    # of places in a box of 18 and of velocities of about 5, with films as good as their solve
-WAYS = {"shells with films": ("p p p", close_spheres, f"{SHARP} multiblob 12 lubrication yes", ""),
-        "clumps of shells": ("p p p", in_few_clumps, f"{SHARP} rigid_clumps yes multiblob 12 lubrication yes", ""),
-        "clumps with a shell": ("f f f", in_few_clumps, f"{SHARP} rigid_clumps yes shell 12", ""),
-        "above a wall": ("f f f", above_a_wall, f"{SHARP} rotation yes lubrication yes wall zlo EDGE", ""),
-        "films": ("p p p", close_spheres, f"{SHARP} rotation yes lubrication yes", "")}
+WAYS = {"shells with films": ("p p p", close_spheres, f"{SHARP} multiblob 12 lubrication yes", TIGHT),
+        "clumps of shells": ("p p p", in_few_clumps, f"{SHARP} rigid_clumps yes multiblob 12 lubrication yes", TIGHT),
+        "clumps with a shell": ("f f f", in_few_clumps, f"{SHARP} rigid_clumps yes shell 12", TIGHT),
+        "above a wall": ("f f f", above_a_wall, f"{SHARP} rotation yes lubrication yes wall zlo EDGE", TIGHT),
+        "films": ("p p p", close_spheres, f"{SHARP} rotation yes lubrication yes", TIGHT)}
 
 
 def test_temperature_0_is_the_run_without(tmp_path):
@@ -174,10 +198,10 @@ def test_temperature_0_is_the_run_without(tmp_path):
     assert (end(tmp_path, script(tmp_path, way, END + ["run 20"], T="0")) == without).all()
 
 
-def test_a_step_takes_two_solves_and_a_root(simulation):
+def test_a_step_takes_one_solve_and_a_root(simulation):
     sim = noise(simulation(Spheres(TRIO, A), f"{INF} multiblob 12 lubrication yes", fix=False, dt=1e-3)).run(3)
     solves, products, error = (sim.lmp.extract_fix("move", 0, 1, nrow=k) for k in (5, 9, 10))
-    assert solves == 1 + 2 * 3 and products <= 16 and error < 0.001
+    assert solves == 1 + 3 and products <= 12 and error < 0.0034
 
 
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)

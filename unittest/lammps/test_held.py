@@ -208,7 +208,7 @@ def test_a_sphere_dragged_through_the_noise_is_one_at_rest_in_a_stream(simulatio
         sim.command("fix trap all addforce v_fx v_fy v_fz")
         if moves:
             sim.commands("group some id 1\nvelocity some set {0!r} {1!r} {2!r}\nfix go some move linear {0!r} {1!r} {2!r}".format(*map(float, U)))
-        sim.commands(f"group probe id 1\n{FIX} held probe temperature 0.8 77").run(40)
+        sim.commands(f"group probe id 1\n{FIX} held probe temperature 0.8 77 noise_tolerance 1e-9").run(40)
         ends.append((sim.x - moves * 40 * dt * U, sim.fix_rows("move")[:, 3:6]))
     assert np.abs(ends[0][0] - x)[1:].max() > 0.1 and np.abs(ends[0][0] - x)[0].max() < 1e-12
     assert np.abs(ends[0][0] - ends[1][0]).max() < 1e-8

@@ -4,7 +4,7 @@ import re
 import numpy as np
 import pytest
 
-from brownian import A, END, ETA, KT, check_heights, check_pieces, check_ranks, end, noise, script
+from brownian import A, END, ETA, KT, TIGHT, check_heights, check_pieces, check_ranks, end, noise, script
 from system import LammpsError, Spheres
 
 FIX = "fix move all stokes_dynamics/overdamped"
@@ -108,7 +108,7 @@ def crowd():
 
 
 SHARP = "cut_off_distance inf visc 1.1 relative_tolerance 1e-12 max_iter 400 rotation yes lubrication yes wall zlo EDGE"
-WAYS = {"spun": ("f f f", crowd, SHARP, " spin all 0 3 0"), "cut": ("f f f", crowd, SHARP, " spin all 0 3 0 40")}
+WAYS = {"spun": ("f f f", crowd, SHARP, " spin all 0 3 0" + TIGHT), "cut": ("f f f", crowd, SHARP, " spin all 0 3 0 40" + TIGHT)}
 
 
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)

@@ -21,7 +21,8 @@ typedef enum {
   SD_RANDOM_BODY,
   SD_RANDOM_GRID,
   SD_RANDOM_FILM,
-  SD_RANDOM_EDDY
+  SD_RANDOM_EDDY,
+  SD_RANDOM_DIFFERENCE
 } sd_random_purpose;
 
 typedef struct {

@@ -308,10 +308,11 @@ static sd_status repair(loop *c, double *guess)
   sd_bodies_collect(A, guess, c->on_spheres, lacks);
   if (A->tie) {
     double *v = c->on_spheres, *borne = v + 6 * (long) A->spheres.n;
-    sd_rigid_move(&A->spheres, V, v);
+    const sd_rigid films = sd_bodies_films(A);
+    sd_rigid_move(&films, V, v);
     const sd_status status = sd_lubrication_apply(A->tie->L, v, borne);
     if (status != SD_OK) return status;
-    sd_rigid_collect(&A->spheres, borne, sd_bodies_count(A), dV);
+    sd_rigid_collect(&films, borne, sd_bodies_count(A), dV);
     for (long j = 0; j < motions(c); j++) lacks[j] += dV[j];
   }
   for (long j = 0; j < motions(c); j++) lacks[j] = c->f[j] - lacks[j];
@@ -390,7 +391,8 @@ static void take_loads(loop *c)
   }
   memcpy(c->f, c->given, sizeof(double) * (size_t) motions(c));
   if (!A->tie) return;
-  sd_rigid_collect(&A->spheres, A->tie->L->carried, sd_bodies_count(A), c->bodies);
+  const sd_rigid films = sd_bodies_films(A);
+  sd_rigid_collect(&films, A->tie->L->carried, sd_bodies_count(A), c->bodies);
   for (long j = 0; j < motions(c); j++) c->f[j] += c->bodies[j];
 }
 
@@ -411,7 +413,10 @@ static sd_status finish(loop *c, const sd_bodies_motion *motion)
   else
     memcpy(motion->exerted, c->rows, sizeof(double) * (size_t) loads);
   if (!A->tie) return SD_OK;
-  const sd_status status = sd_lubrication_apply(A->tie->L, motion->v, c->on_spheres);
+  const sd_rigid films = sd_bodies_films(A);
+  double *there = c->on_spheres + loads;
+  sd_rigid_move(&films, V, there);
+  const sd_status status = sd_lubrication_apply(A->tie->L, there, c->on_spheres);
   for (long j = 0; j < loads; j++)
     motion->exerted[j] += c->on_spheres[j] - A->tie->L->carried[j];
   return status;

@@ -10,13 +10,16 @@
 
 typedef struct {
   const sd_bodies *A;
-  const sd_body *block;
+  const sd_bodies_blocks *blocks;
   int shells;
   /* [rows] P where it is diagonal, 1 where it has blocks, 0 at rows that no body has */
   double *diagonal;
   /* scratch: bodies, three times, of which the last stay 0; spheres; rows; two bodies */
   double *bodies, *on_spheres, *rows, *own;
 } draw;
+
+/* P, its transpose, and the inverse of that */
+typedef enum { HALF, HALF_BACK, HALF_INVERSE } half_of;
 
 void sd_bodies_noise_free(sd_bodies_noise *s)
 {
@@ -32,60 +35,78 @@ static sd_status apply(void *ctx, const double *l, double *w)
   return sd_bodies_product(d->A, d->shells, l, still, d->bodies, d->on_spheres, d->rows, w);
 }
 
+static const sd_body_root *root_of(const sd_bodies_blocks *blocks, int b)
+{
+  const sd_body_root *root = blocks->body[b].shape ? blocks->root[b] : NULL;
+  return root && root->n > 0 ? root : NULL;
+}
+
+/* Torques of a body in rows, or angular velocities, times a length */
+static void stretch(const sd_body *b, double length, double *rows)
+{
+  for (int k = 0; k < b->shape->m && b->shape->width > 3; k++)
+    for (int d = 3; d < 6; d++) rows[6 * (long) b->row[k] + d] *= length;
+}
+
 /* R x or R^T x of each vector of a row */
 static void turn(const double R[9], int back, int width, const double *x, double *y)
 {
   for (int at = 0; at < width; at += 3) (back ? sd_multiply3t : sd_multiply3)(R, x + at, y + at);
 }
 
-/* Torques of a body of m points in rows, or angular velocities, times its length */
-static void stretch(const sd_body *b, double *rows)
+/* scale R B R^T of one body, B [n n] symmetric, in place */
+static void take_block(const sd_body *b, double scale, const double *B, double *own, double *rows)
 {
-  for (int k = 0; k < b->shape->m && b->shape->width > 3; k++)
-    for (int d = 3; d < 6; d++) rows[6 * (long) b->row[k] + d] *= b->shape->length;
+  const int w = b->shape->width, n = w * b->shape->m;
+  double *x = own, *y = own + n;
+  for (int k = 0; k < b->shape->m; k++) turn(b->R, 1, w, rows + (long) w * b->row[k], x + w * k);
+  memset(y, 0, sizeof(double) * (size_t) n);
+  for (int j = 0; j < n; j++) {
+    const double at = scale * x[j], *row = B + (long) j * n;
+    for (int i = 0; i < n; i++) y[i] += row[i] * at;
+  }
+  for (int k = 0; k < b->shape->m; k++) turn(b->R, 0, w, y + w * k, rows + (long) w * b->row[k]);
 }
 
-/* sqrt(eta a) R root R^T of one body, in place */
-static void take_root(const sd_body *b, double *own, double *rows)
-{
-  const sd_body_shape *shape = b->shape;
-  const int w = shape->width, N = w * shape->m;
-  const double scale = sqrt(b->eta * b->a);
-  double *x = own, *y = own + N;
-  for (int k = 0; k < shape->m; k++) turn(b->R, 1, w, rows + (long) w * b->row[k], x + w * k);
-  memset(y, 0, sizeof(double) * (size_t) N);
-  for (int j = 0; j < N; j++)
-    for (int i = 0; i < N; i++) y[i] += scale * shape->root[(long) j * N + i] * x[j];
-  for (int k = 0; k < shape->m; k++) turn(b->R, 0, w, y + w * k, rows + (long) w * b->row[k]);
-}
-
-static int has_root(const sd_body *b)
-{
-  return b->shape && b->shape->root;
-}
-
-/* out = P v, back: P^T v */
-static sd_status multiply(const draw *d, int back, const double *v, double *out)
+/* P = S C^-1 sqrt(eta a), S: torques times the length, so P^T = C^-1 S and P^-T = S^-1 C */
+static void multiply(const draw *d, half_of which, const double *v, double *out)
 {
   if (out != v) memcpy(out, v, sizeof(double) * (size_t) sd_bodies_rows(d->A));
   for (int b = 0; b < d->A->shaped; b++) {
-    if (!has_root(d->block + b)) continue;
-    if (back) stretch(d->block + b, out);
-    take_root(d->block + b, d->own, out);
-    if (!back) stretch(d->block + b, out);
+    const sd_body *body = d->blocks->body + b;
+    const sd_body_root *root = root_of(d->blocks, b);
+    if (!root) continue;
+    const double scale = sqrt(body->eta * body->a);
+    if (which == HALF_BACK) stretch(body, root->length, out);
+    if (which == HALF_INVERSE)
+      take_block(body, 1.0 / scale, root->root, d->own, out);
+    else
+      take_block(body, scale, root->inverse, d->own, out);
+    if (which == HALF) stretch(body, root->length, out);
+    if (which == HALF_INVERSE) stretch(body, 1.0 / root->length, out);
   }
-  for (long j = 0; j < sd_bodies_rows(d->A); j++) out[j] *= d->diagonal[j];
-  return SD_OK;
+  for (long j = 0; j < sd_bodies_rows(d->A); j++)
+    out[j] = d->diagonal[j] > 0.0
+        ? (which == HALF_INVERSE ? out[j] / d->diagonal[j] : out[j] * d->diagonal[j])
+        : 0.0;
 }
 
 static sd_status half(void *ctx, const double *v, double *out)
 {
-  return multiply(ctx, 0, v, out);
+  multiply(ctx, HALF, v, out);
+  return SD_OK;
 }
 
 static sd_status half_back(void *ctx, const double *v, double *out)
 {
-  return multiply(ctx, 1, v, out);
+  multiply(ctx, HALF_BACK, v, out);
+  return SD_OK;
+}
+
+static sd_status half_inverse(void *ctx, const double *v, double *out)
+{
+  multiply(ctx, HALF_INVERSE, v, out);
+  return SD_OK;
 }
 
 static void fill_diagonal(const draw *d)
@@ -100,28 +121,34 @@ static void fill_diagonal(const draw *d)
     const sd_body *body = A->body + b;
     for (int k = 0; k < body->shape->m; k++)
       for (long j = (long) w * body->row[k]; j < (long) w * (body->row[k] + 1); j++)
-        d->diagonal[j] = has_root(d->block + b) ? 1.0 : sqrt(A->D[j]);
+        d->diagonal[j] = root_of(d->blocks, b) ? 1.0 : sqrt(A->D[j]);
   }
 }
 
 /* Numbers of the largest block, twice */
-static long largest_block(const sd_bodies *A, const sd_body *block)
+static long largest_block(const sd_bodies *A, const sd_bodies_blocks *blocks)
 {
-  long m = 0;
+  long n = 0;
   for (int b = 0; b < A->shaped; b++)
-    if (has_root(block + b) && block[b].shape->m > m) m = block[b].shape->m;
-  return 2 * A->points.width * m;
+    if (root_of(blocks, b) && blocks->root[b]->n > n) n = blocks->root[b]->n;
+  return 2 * n;
 }
 
-sd_status sd_bodies_draw(sd_bodies_noise *s, const sd_bodies *A, const sd_body *block,
-                         const double *w, double tolerance, double *F, sd_noise_report *report)
+/* Whichever of the two processes of sd_noise.h this is */
+typedef sd_status process_of(sd_noise *, const sd_noise_matrix *, const double *w, double tolerance, double *out,
+                             sd_noise_report *report);
+
+static sd_status draw_by(process_of *process, sd_bodies_noise *s, const sd_bodies *A,
+                         const sd_bodies_blocks *blocks, const double *w, double tolerance, double *out,
+                         sd_noise_report *report)
 {
   const long rows = sd_bodies_rows(A), motions = 6 * (long) sd_bodies_count(A);
-  const long all = 3 * rows + 3 * motions + 6 * (long) A->spheres.n + largest_block(A, block) + 1;
+  const long all = 2 * rows + 3 * motions + 6 * (long) A->spheres.n + largest_block(A, blocks) + 1;
   if (!sd_reserve(&s->work, sizeof(double), (size_t) all, &s->room)) return SD_ENOMEMORY;
-  double *f = s->work, *diagonal = f + rows, *bodies = diagonal + rows;
-  double *on_spheres = bodies + 3 * motions, *scratch = on_spheres + 6 * (long) A->spheres.n;
-  draw d = {A, block, sd_bodies_shells(A), diagonal, bodies, on_spheres, scratch, scratch + rows};
+  double *diagonal = s->work, *bodies = diagonal + rows, *on_spheres = bodies + 3 * motions;
+  double *scratch = on_spheres + 6 * (long) A->spheres.n;
+  draw d = {A,      blocks,     sd_bodies_shells(A), diagonal,
+            bodies, on_spheres, scratch,             scratch + rows};
   memset(bodies + 2 * motions, 0, sizeof(double) * (size_t) motions);
   fill_diagonal(&d);
   const sd_noise_matrix M = {.n = rows,
@@ -130,9 +157,23 @@ sd_status sd_bodies_draw(sd_bodies_noise *s, const sd_bodies *A, const sd_body *
                              .D = diagonal,
                              .half = half,
                              .half_back = half_back,
+                             .half_inverse = half_inverse,
                              .half_ctx = &d,
                              .world = A->world};
-  const sd_status status = sd_noise_forces(&s->process, &M, w, tolerance, f, report);
+  return process(&s->process, &M, w, tolerance, out, report);
+}
+
+sd_status sd_bodies_draw(sd_bodies_noise *s, const sd_bodies *A, const sd_bodies_blocks *blocks,
+                         const double *w, double tolerance, double *y, sd_noise_report *report)
+{
+  return draw_by(sd_noise_velocities, s, A, blocks, w, tolerance, y, report);
+}
+
+sd_status sd_bodies_draw_forces(sd_bodies_noise *s, const sd_bodies *A, const sd_bodies_blocks *blocks,
+                                const double *w, double tolerance, double *f, double *F,
+                                sd_noise_report *report)
+{
+  const sd_status status = draw_by(sd_noise_forces, s, A, blocks, w, tolerance, f, report);
   if (status != SD_OK) return status;
   if (A->points.whole)
     sd_rigid_collect(&A->points, f, A->spheres.n, F);

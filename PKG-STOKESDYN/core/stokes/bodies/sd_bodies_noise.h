@@ -1,21 +1,20 @@
-/* Brownian forces on the bodies of sd_bodies.h: random forces whose covariance is the resistance of
- * all bodies, so that the velocities that follow from them have that of the mobility.
+/* Random velocities at the points of the bodies of sd_bodies.h, whose covariance is the matrix of the
+ * points: as a slip of one solve they make all bodies move at random, by their common mobility.
  *
- *   f of covariance M'^-1 on the points,  K^T f of covariance K^T M'^-1 K = R
- *   V = R^-1 K^T f sqrt(2 kT/dt) then has the covariance 2 kT/dt R^-1
+ *   y of covariance M',   M' l - K V = -(u + y),  K^T l + L V = F + f_L
+ *   cov(V) = N (K^T M'^-1 M' M'^-1 K + L) N = N        f_L of covariance L (sd_lubrication_noise.h)
  *
- * by Lanczos's process (sd_noise.h) on P^T M' P, where P is made of roots of M_b'^-1, in which every
- * body is for itself: what is stiff within bodies is no part of the process. Any P will do for the
- * covariance, so that blocks of open space serve above a wall. P is symmetric, but for the length that
- * makes torques comparable to forces (sd_body_shape.h), and turns with the body: numbers of points in
- * axes of space give the same forces in whatever axes the shape is kept.
- *
- * With a tie the films' own random forces (sd_lubrication_noise.h) come on top: R + K^T L K.
- * Source: reference of the project, brownian.md 2; the blocks are our own choice. */
+ * by Lanczos's process (sd_noise.h) on P^T M' P, where P is made of roots of the bodies' own matrices
+ * (sd_body_root.h). Any P will do for the covariance, so that blocks of open space serve above a wall. P is
+ * symmetric, but for the length of torques, and turns with the body: numbers of points in axes of space
+ * give the same velocities in whatever axes the shape is kept. The matrix may also be a part of M', the near
+ * one of a sum that is split; what draws the other part is the caller's.
+ * Source: reference of the project, noise-faster.md 1.1 and 1.5. */
 #ifndef SD_BODIES_NOISE_H
 #define SD_BODIES_NOISE_H
 
 #include "sd_body.h"
+#include "sd_body_root.h"
 #include "sd_noise.h"
 
 SD_BEGIN_C
@@ -27,13 +26,29 @@ typedef struct {
   size_t room;
 } sd_bodies_noise;
 
-/* F [spheres] of the bodies where they stand, from independent standard normal numbers w [points],
- * which are not read at rows that no body has. block [A->shaped]: the bodies that P is made of,
- * those of A or as they are in open space; one whose shape is NULL, or has no root
- * (sd_body_shape.h), counts by its diagonal. At width 6 their a = 1. e < tolerance as in
- * sd_noise.h, whose reports and failures these are; and SD_ENOMEMORY. */
-sd_status sd_bodies_draw(sd_bodies_noise *s, const sd_bodies *A, const sd_body *block,
-                         const double *w, double tolerance, double *F, sd_noise_report *report);
+/* What P is made of: [A->shaped] how the bodies stand, those of A or as they are in open space, and their
+ * roots; one whose shape is NULL, or whose root is NULL or has n = 0, counts by its diagonal. At width 6
+ * their a = 1. */
+typedef struct {
+  const sd_body *body;
+  const sd_body_root *const *root;
+} sd_bodies_blocks;
+
+/* y [points] from independent standard normal numbers w [points], which are not read at rows that no body
+ * has; y is 0 there. e < tolerance as in sd_noise.h, whose reports and failures these are; and
+ * SD_ENOMEMORY. */
+sd_status sd_bodies_draw(sd_bodies_noise *s, const sd_bodies *A, const sd_bodies_blocks *blocks,
+                         const double *w, double tolerance, double *y, sd_noise_report *report);
+
+/* Where two places of a step need the same numbers, or what the noise does to the stress is asked for: forces
+ * on the spheres, F [width spheres], for which a solve finds velocities of the same covariance,
+ *
+ *   F = K^T f,  f of covariance M'^-1:   cov(N F) = N K^T M'^-1 K N = N,   F of films likewise to be added
+ *
+ * f [points]: scratch. Otherwise as above. Source: Fixman, J. Chem. Phys. 69, 1527 (1978). */
+sd_status sd_bodies_draw_forces(sd_bodies_noise *s, const sd_bodies *A, const sd_bodies_blocks *blocks,
+                                const double *w, double tolerance, double *f, double *F,
+                                sd_noise_report *report);
 
 void sd_bodies_noise_free(sd_bodies_noise *s);
 

@@ -45,6 +45,9 @@ typedef struct {
   /* Spheres on bodies: width 6, in the model without torques 3. Points on spheres: whole NULL: the
    * spheres are the points, of equal width */
   sd_rigid spheres, points;
+  /* [3 spheres] arms by which films act, where these stand otherwise than points; NULL: those of
+   * spheres */
+  const double *film_arm;
   /* points on spheres, how these face each other, for what ties them; NULL: not known */
   const sd_faces *faces;
   /* [width points] 6 pi eta a in rows of forces, 8 pi eta a^3 in those of torques */
@@ -72,6 +75,13 @@ static inline int sd_bodies_given(const sd_bodies *A, int b, int d)
   const sd_body_known known = sd_bodies_known(A, b);
   return known == SD_BODY_HELD || (known == SD_BODY_SPUN && d >= 3) ||
       (known == SD_BODY_PINNED && d < 3);
+}
+/* Spheres on bodies, as films see them */
+static inline sd_rigid sd_bodies_films(const sd_bodies *A)
+{
+  sd_rigid K = A->spheres;
+  if (A->film_arm) K.arm = A->film_arm;
+  return K;
 }
 /* Numbers of rows, of spheres */
 static inline long sd_bodies_rows(const sd_bodies *A)

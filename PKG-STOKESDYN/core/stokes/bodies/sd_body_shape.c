@@ -113,17 +113,19 @@ static sd_status complete(sd_body_shape *s)
   return SD_OK;
 }
 
-sd_status sd_body_shape_of(int m, int width, const double *x, const double *M,
+sd_status sd_body_shape_of(int m, int width, const double *x, const double *radius, const double *M,
                            sd_body_shape *s)
 {
   const size_t N = (size_t) width * (size_t) m;
   *s = (sd_body_shape){.m = m, .width = width};
   s->x = malloc(sizeof(double) * 3 * (size_t) m);
+  s->radius = malloc(sizeof(double) * (size_t) m);
   s->inverse = malloc(sizeof(double) * N * N);
   s->rigid = malloc(sizeof(double) * 6 * N);
-  sd_status status = s->x && s->inverse && s->rigid ? SD_OK : SD_ENOMEMORY;
+  sd_status status = s->x && s->radius && s->inverse && s->rigid ? SD_OK : SD_ENOMEMORY;
   if (status == SD_OK) {
     memcpy(s->x, x, sizeof(double) * 3 * (size_t) m);
+    memcpy(s->radius, radius, sizeof(double) * (size_t) m);
     memcpy(s->inverse, M, sizeof(double) * N * N);
     status = complete(s);
   }
@@ -149,19 +151,21 @@ static void complete_mirrored(sd_body_shape *s, double *work)
   sd_pseudo_inverse6(s->resistance, s->mobility);
 }
 
-sd_status sd_body_shape_mirrored(int m, const double *x, const double axes[9], const double *M,
-                                 sd_body_shape *s)
+sd_status sd_body_shape_mirrored(int m, const double *x, const double *radius, const double axes[9],
+                                 const double *M, sd_body_shape *s)
 {
   const size_t N = 3 * (size_t) m;
   *s = (sd_body_shape){.m = m, .width = 3};
   s->x = malloc(sizeof(double) * N);
+  s->radius = malloc(sizeof(double) * (size_t) m);
   s->rigid = malloc(sizeof(double) * 6 * N);
   s->mirrored = calloc(1, sizeof *s->mirrored);
   double *work = malloc(sizeof(double) * 2 * N);
-  sd_status status = s->x && s->rigid && s->mirrored && work ? SD_OK : SD_ENOMEMORY;
+  sd_status status = s->x && s->radius && s->rigid && s->mirrored && work ? SD_OK : SD_ENOMEMORY;
   if (status == SD_OK) status = sd_mirrored_create(m, x, axes, M, s->mirrored);
   if (status == SD_OK) {
     memcpy(s->x, x, sizeof(double) * N);
+    memcpy(s->radius, radius, sizeof(double) * (size_t) m);
     complete_mirrored(s, work);
   } else
     sd_body_shape_free(s);
@@ -176,7 +180,7 @@ sd_status sd_body_shape_create(const sd_shape *shape, const sd_clump *shells, sd
   *s = (sd_body_shape){0};
   if (!M) return SD_ENOMEMORY;
   sd_wall_matrix(NULL, shape->n, 6, shape->x, shape->a, M);
-  sd_status status = sd_body_shape_of(shape->n, 6, shape->x, M, s);
+  sd_status status = sd_body_shape_of(shape->n, 6, shape->x, shape->a, M, s);
   /* Now N_spheres and M_b^-1 K are known, which M_b' is made of; then once more with it. */
   if (status == SD_OK && shells) {
     memcpy(s->inverse, M, sizeof(double) * N * N);
@@ -197,7 +201,7 @@ sd_status sd_body_wall_shape(const sd_wall *wall, int m, int width, const double
   if (!M) return SD_ENOMEMORY;
   sd_wall_matrix(wall, m, width, x, a, M);
   for (size_t k = 0; k < (size_t) m; k++) sd_minus(x + 3 * k, centre, arm + 3 * k);
-  const sd_status status = sd_body_shape_of(m, width, arm, M, out);
+  const sd_status status = sd_body_shape_of(m, width, arm, a, M, out);
   free(M);
   return status;
 }
@@ -207,40 +211,12 @@ int sd_body_wall_pays(int m, int bodies, double height, double extent)
   return height < 10.0 * extent && (m <= SD_BODY_WALL_SMALL || m <= 3.0 * bodies);
 }
 
-/* Of the torques of M_b'^-1, beside its forces */
-static double length_of(const sd_body_shape *s)
-{
-  const size_t N = (size_t) s->width * (size_t) s->m;
-  double sum[2] = {0.0, 0.0};
-  for (size_t j = 0; j < N; j++) sum[j % (size_t) s->width > 2] += s->inverse[(N + 1) * j];
-  return s->width > 3 ? sqrt(sum[1] / sum[0]) : 1.0;
-}
-
-sd_status sd_body_shape_take_root(sd_body_shape *s)
-{
-  const size_t N = (size_t) s->width * (size_t) s->m;
-  if (s->root || N > SD_BODY_ROOT_MOST) return SD_OK;
-  double *root = malloc(sizeof(double) * N * N);
-  if (!root) return SD_ENOMEMORY;
-  const size_t width = (size_t) s->width;
-  s->length = length_of(s);
-  for (size_t e = 0; e < N * N; e++)
-    root[e] = s->inverse[e] / (e / N % width > 2 ? s->length : 1.0) /
-        (e % N % width > 2 ? s->length : 1.0);
-  const sd_status status = sd_symmetric_root((int) N, root);
-  if (status == SD_OK)
-    s->root = root;
-  else
-    free(root);
-  return status;
-}
-
 void sd_body_shape_free(sd_body_shape *s)
 {
   if (s->mirrored) sd_mirrored_free(s->mirrored);
   free(s->mirrored);
-  free(s->root);
   free(s->x);
+  free(s->radius);
   free(s->inverse);
   free(s->rigid);
   *s = (sd_body_shape){0};

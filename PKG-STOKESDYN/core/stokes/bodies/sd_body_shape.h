@@ -31,15 +31,12 @@ SD_BEGIN_C
 typedef struct {
   /* points, and numbers of each: 3 or 6 */
   int m, width;
-  /* [3m] X_k, from the centre */
-  double *x;
+  /* [3m] X_k, from the centre; [m] radii */
+  double *x, *radius;
   /* [(width m)^2] M_b'^-1, symmetric, or in blocks, width 3: then `inverse` is NULL; [(width m) 6] M_b'^-1 K,
    * row-major */
   double *inverse, *rigid;
   sd_mirrored *mirrored;
-  /* [(width m)^2] the root of M_b'^-1 with torques over a length, symmetric; NULL until
-   * sd_body_shape_take_root(); and that length, over which torques are comparable to forces */
-  double *root, length;
   /* [6 6] of the lone body: (U, W) from force and torque about the centre; and its inverse */
   double mobility[36], resistance[36];
   /* [6 6] dN, 0 without shells */
@@ -48,14 +45,15 @@ typedef struct {
   double carried[36];
 } sd_body_shape;
 
-/* The shape of points x [3m] whose matrix is M [(width m)^2]: that of sd_wall_matrix,
+/* The shape of points x [3m] with radii [m] whose matrix is M [(width m)^2]: that of sd_wall_matrix,
  * or with what a model adds for each body alone. The owner frees.
  * SD_OK; SD_ENOMEMORY; SD_ESINGULAR: M is not positive definite (points of equal radii at one
  * place); SD_ENOTFINITE. */
-sd_status sd_body_shape_of(int m, int width, const double *x, const double *M, sd_body_shape *out);
+sd_status sd_body_shape_of(int m, int width, const double *x, const double *radius, const double *M,
+                           sd_body_shape *out);
 /* The same of width 3 where mirrors leave M as it is (sd_mirrored.h). */
-sd_status sd_body_shape_mirrored(int m, const double *x, const double axes[9], const double *M,
-                                 sd_body_shape *out);
+sd_status sd_body_shape_mirrored(int m, const double *x, const double *radius, const double axes[9],
+                                 const double *M, sd_body_shape *out);
 /* out [width m] = M_b'^-1 y, on entry 0 */
 void sd_body_shape_answer(const sd_body_shape *s, const double *y, double *out);
 /* A clump of spheres with forces and torques. shells: the clump of this shape with shells; NULL:
@@ -75,11 +73,6 @@ sd_status sd_body_wall_shape(const sd_wall *wall, int m, int width, const double
 enum { SD_BODY_WALL_SMALL = 42 };
 int sd_body_wall_pays(int m, int bodies, double height, double extent);
 
-/* Makes the root, if there is none yet: for noise. A body of more than SD_BODY_ROOT_MOST numbers
- * does without one, which would take longer than what it saves. SD_OK; SD_ENOMEMORY;
- * SD_ENOTFINITE. */
-#define SD_BODY_ROOT_MOST 600
-sd_status sd_body_shape_take_root(sd_body_shape *s);
 void sd_body_shape_free(sd_body_shape *s);
 
 SD_END_C

@@ -9,7 +9,7 @@
 #include "sd_tie_approach.h"
 #include "sd_tie_factor.h"
 
-enum { MOST_PRODUCTS = 1000, VECTORS = 5 };
+enum { MOST_PRODUCTS = 1000, VECTORS = 6 };
 
 sd_status sd_tie_make(const sd_bodies *A)
 {
@@ -23,17 +23,34 @@ sd_status sd_tie_make(const sd_bodies *A)
   return status == SD_OK ? sd_tie_factor(A) : status;
 }
 
-/* out = K^T (L + X) K V */
-static sd_status resist(const sd_bodies *A, const double *V, double *out)
+/* out += sign K^T f of what spheres at the arms of K bear when they move with K V: (L + X), or L alone. v, f
+ * [6 spheres]: scratch; by_bodies [6 bodies] */
+static sd_status add_borne(const sd_bodies *A, const sd_rigid *K, int both, double sign, const double *V,
+                           double *by_bodies, double *out)
 {
   sd_tie *t = A->tie;
   double *v = t->rows, *f = v + 6 * (long) t->L->n;
-  sd_rigid_move(&A->spheres, V, v);
-  const sd_status status = sd_lubrication_apply_both(t->L, t->stiff, t->spring, v, f);
+  sd_rigid_move(K, V, v);
+  const sd_status status = both ? sd_lubrication_apply_both(t->L, t->stiff, t->spring, v, f)
+                                : sd_lubrication_apply(t->L, v, f);
   t->products++;
   if (status != SD_OK) return status;
-  sd_rigid_collect(&A->spheres, f, sd_bodies_count(A), out);
+  sd_rigid_collect(K, f, sd_bodies_count(A), by_bodies);
+  for (long j = 0; j < 6 * (long) sd_bodies_count(A); j++) out[j] += sign * by_bodies[j];
   return SD_OK;
+}
+
+/* out = K^T (L + X) K V. Where films have arms of their own L has these, and X, which is of the points, those of
+ * the points: their forces must add up to what is borne. */
+static sd_status resist(const sd_bodies *A, const double *V, double *out)
+{
+  const sd_rigid films = sd_bodies_films(A);
+  double *by_bodies = A->tie->vectors + 6 * (VECTORS - 1) * (long) sd_bodies_count(A);
+  memset(out, 0, sizeof(double) * 6 * (size_t) sd_bodies_count(A));
+  sd_status status = add_borne(A, &A->spheres, 1, 1.0, V, by_bodies, out);
+  if (!A->film_arm || status != SD_OK) return status;
+  status = add_borne(A, &A->spheres, 0, -1.0, V, by_bodies, out);
+  return status == SD_OK ? add_borne(A, &films, 0, 1.0, V, by_bodies, out) : status;
 }
 
 typedef struct {

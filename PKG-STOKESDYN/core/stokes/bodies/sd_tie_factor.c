@@ -71,7 +71,8 @@ static const double *arm_of(const sd_bodies *A, const assembly *a, int sphere)
   static const double none[3] = {0.0};
   const int n = A->spheres.n;
   if (sphere >= n) return a->place + PLACE * (long) (sphere - n) + ARM;
-  return A->spheres.arm ? A->spheres.arm + 3 * (long) sphere : none;
+  const double *arm = sd_bodies_films(A).arm;
+  return arm ? arm + 3 * (long) sphere : none;
 }
 
 static void add_scaled(const double *B, const double *rows, const double *columns, double *out)

@@ -313,11 +313,13 @@ sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, 
 }
 
 sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
-                                   double tolerance, sd_ewald *out)
+                                   double tolerance, double bound, sd_ewald *out)
 {
   int some;
   const sd_status status = ew_prepare(box, &sizes->all, tolerance, out, &some);
-  return some ? one_level(out, fall_for(out), &sizes->all, width, SD_EWALD_POSITIVE) : status;
+  if (!some) return status;
+  out->positive = bound;
+  return one_level(out, fall_for(out), &sizes->all, width, bound);
 }
 
 /* Heights above the wall multiply what grid and near part leave out of images. Part of the tolerance

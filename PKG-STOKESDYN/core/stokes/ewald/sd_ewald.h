@@ -88,14 +88,18 @@ typedef struct {
   /* xi of a smoother splitting, whose waves these spheres have too: this one's are less by them
    * (sd_ewald_levels.h). 0: there is none */
   double taken;
+  /* both parts are positive: xi times the largest radius is at most this. 0: nobody asked for that */
+  double positive;
   sd_ewald_images images;
   sd_ewald_slab slab;
 } sd_ewald;
 
 /* --- the choice --- */
 
-/* See sd_ewald_choose_positive */
+/* See sd_ewald_choose_positive: of spheres, and of points of shells with the one-body addition
+ * (sd_multiblob.h) */
 #define SD_EWALD_POSITIVE 0.6
+#define SD_EWALD_POSITIVE_ADDITION 0.5
 
 /* The widest window; classes of radii */
 enum { SD_EWALD_MOST_POINTS = 20, SD_EWALD_OCTAVES = 10 };
@@ -126,10 +130,12 @@ sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, 
                           double tolerance, sd_ewald *out);
 
 /* The same for random numbers whose covariance is the sum: xi times the largest radius is at most
- * SD_EWALD_POSITIVE, so that wave part and near part are each positive definite in every
- * scene that was tried, overlaps too (at 0.7 some were not). */
+ * `bound`. With SD_EWALD_POSITIVE wave part and near part are each positive definite in every
+ * scene that was tried, overlaps too (at 0.7 some were not). The addition of shells is negative and
+ * belongs to the near part: with SD_EWALD_POSITIVE_ADDITION that is positive in suspensions up to a
+ * volume fraction of 0.5 (at 0.6 it is not at 0.45). */
 sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
-                                   double tolerance, sd_ewald *out);
+                                   double tolerance, double bound, sd_ewald *out);
 
 /* The same for spheres in an open box above a wall, with their images (sd_image_kernel.h); forces
  * alone. */

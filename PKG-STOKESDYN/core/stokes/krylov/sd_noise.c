@@ -165,7 +165,8 @@ static sd_status iterate(process *q, const double *w, double tolerance, sd_noise
   while (status == SD_OK && q->length > 0.0) {
     if ((status = extend(q)) != SD_OK) break;
     report->products = q->m;
-    if ((status = take_roots(q)) != SD_OK) break;
+    /* LAPACK's last digits need not be those of another rank: what is not positive there is so here */
+    if ((status = sd_world_agree(&q->M->world, take_roots(q))) != SD_OK) break;
     if (q->beta[q->m - 1] <= NOTHING * fabs(q->alpha[q->m - 1])) {
       report->error = 0.0;
       break;
@@ -193,6 +194,10 @@ sd_status sd_noise_velocities(sd_noise *s, const sd_noise_matrix *M, const doubl
   const sd_status status = iterate(&q, w, tolerance, report);
   if (status != SD_OK && status != SD_EMAXITER) return status;
   combine(&q, q.p, y);
+  if (M->half_inverse) {
+    const sd_status last = M->half_inverse(M->half_ctx, y, y);
+    return last == SD_OK ? status : last;
+  }
   for (long j = 0; j < M->n; j++) y[j] = M->D[j] > 0.0 ? y[j] / sqrt(M->D[j]) : 0.0;
   return status;
 }

@@ -37,9 +37,9 @@ typedef struct {
   /* [n] D, about the inverse of M's diagonal; 0: M has no such row, y and f are 0 there */
   const double *D;
   /* out = P v, also in its place, for a better P: P P^T about the inverse of M. D then only tells which
-   * rows there are. Not for sd_noise_velocities, which wants the inverse of P. NULL: P = D^1/2.
-   * half_back: out = P^T v likewise */
-  sd_apply *half, *half_back;
+   * rows there are. NULL: P = D^1/2. half_back: out = P^T v likewise; half_inverse, which
+   * sd_noise_velocities alone wants: out = P^-T v */
+  sd_apply *half, *half_back, *half_inverse;
   void *half_ctx;
   /* sum */
   sd_world world;

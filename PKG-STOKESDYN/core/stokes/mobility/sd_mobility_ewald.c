@@ -209,7 +209,7 @@ static int divides(const void *state)
 {
   const ewald *e = state;
   return e->ewald.count > 0.0 && e->ewald.box.periodic && e->ewald.taken == 0.0 &&
-      e->ewald.xi * e->ewald.largest <= SD_EWALD_POSITIVE * (1.0 + 1e-9);
+      e->ewald.xi * e->ewald.largest <= e->ewald.positive * (1.0 + 1e-9);
 }
 
 static sd_status apply_rest(void *state, const double *F, double *u)

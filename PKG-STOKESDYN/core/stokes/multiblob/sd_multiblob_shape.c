@@ -62,8 +62,8 @@ static sd_status make_shape(const sd_multiblob *m, const sd_wall *wall, int mirr
   double axes[9];
   sd_multiblob_axes(axes);
   const sd_status status = mirrors && count >= MIRRORED
-      ? sd_body_shape_mirrored(count, x, axes, M, out)
-      : sd_body_shape_of(count, 3, x, M, out);
+      ? sd_body_shape_mirrored(count, x, b, axes, M, out)
+      : sd_body_shape_of(count, 3, x, b, M, out);
   free(M);
   return status;
 }

@@ -23,7 +23,7 @@ static sd_status lone_shell(const sd_multiblob *m, const sd_wall *wall, double h
   }
   sd_wall_matrix(wall, m->n, 3, x, b, M);
   if (one_body) sd_multiblob_one_body_matrix(m, 1.0, r, N, M);
-  const sd_status status = sd_body_shape_of(m->n, 3, r, M, out);
+  const sd_status status = sd_body_shape_of(m->n, 3, r, b, M, out);
   free(M);
   return status;
 }

@@ -63,7 +63,7 @@ static void blocks_are_made_where_they_pay(void **state)
   double A[SIZE * SIZE];
   assert_int_equal(sd_body_wall_shape(&ground, M, 6, far, a, middle, &here), SD_OK);
   sd_wall_matrix(NULL, M, 6, x, a, A);
-  assert_int_equal(sd_body_shape_of(M, 6, x, A, &open), SD_OK);
+  assert_int_equal(sd_body_shape_of(M, 6, x, a, A, &open), SD_OK);
   for (int e = 0; e < 36; e++) CHECK_NEAR(here.resistance[e], open.resistance[e], 1e-5);
   sd_body_shape_free(&here);
   sd_body_shape_free(&open);

@@ -60,12 +60,12 @@ static void make_shapes(cloud *s)
   for (int j = 0; j < 3 * K; j++) x[j] *= REACH;
   for (int k = 0; k < 2 * K; k++) a[k] = POINT;
   sd_wall_matrix(NULL, K, 3, x, a, M);
-  assert_int_equal(sd_body_shape_of(K, 3, x, M, &s->one), SD_OK);
+  assert_int_equal(sd_body_shape_of(K, 3, x, a, M, &s->one), SD_OK);
   for (int k = K; k < 2 * K; k++)
     for (int d = 0; d < 3; d++) x[3 * k + d] = x[3 * (k - K) + d] + (d == 2);
   for (int k = 0; k < K; k++) x[3 * k + 2] -= 1.0;
   sd_wall_matrix(NULL, 2 * K, 3, x, a, M);
-  assert_int_equal(sd_body_shape_of(2 * K, 3, x, M, &s->two), SD_OK);
+  assert_int_equal(sd_body_shape_of(2 * K, 3, x, a, M, &s->two), SD_OK);
 }
 
 static cloud *cloud_create(void)

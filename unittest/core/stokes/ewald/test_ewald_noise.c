@@ -59,7 +59,7 @@ static void waves_have_exactly_the_covariance_of_their_product(void **state)
     eight(x, a, w);
     const sd_ewald_sizes sizes = periodic_sizes(a, N);
     sd_ewald how;
-    assert_int_equal(sd_ewald_choose_positive(&box, &sizes, width, 3e-2, &how), SD_OK);
+    assert_int_equal(sd_ewald_choose_positive(&box, &sizes, width, 3e-2, SD_EWALD_POSITIVE, &how), SD_OK);
     periodic p;
     periodic_place(&p, x, a, w, N, width, &how);
     assert_true(sd_mobility_divides(&p.omega));
@@ -107,7 +107,7 @@ static void check_near_part(const char *scene_name, const scene *s, double side,
   sizes.all.squares *= 1e4;
   sizes.all.fourths *= 1e4;
   sd_ewald how;
-  assert_int_equal(sd_ewald_choose_positive(&box, &sizes, 3, 1e-3, &how), SD_OK);
+  assert_int_equal(sd_ewald_choose_positive(&box, &sizes, 3, 1e-3, SD_EWALD_POSITIVE, &how), SD_OK);
   how.count = s->n;
   CHECK_NEAR(how.xi * how.largest, SD_EWALD_POSITIVE, 1e-9);
   periodic p;
@@ -161,7 +161,7 @@ static void no_wave_of_equal_spheres_is_negative(void **state)
       const sd_ewald_box box = {.periodic = 1, .edge = {edge, edge, edge}};
       const sd_ewald_sizes sizes = {.all = {n, n * a * a, n * pow(a, 4), a}};
       sd_ewald how;
-      assert_int_equal(sd_ewald_choose_positive(&box, &sizes, 3, pow(10.0, -digits), &how), SD_OK);
+      assert_int_equal(sd_ewald_choose_positive(&box, &sizes, 3, pow(10.0, -digits), SD_EWALD_POSITIVE, &how), SD_OK);
       if (crowded) CHECK_NEAR(how.xi * a, SD_EWALD_POSITIVE, 1e-9);
       for (double k = 0.01; k < 12.0; k += 0.01) {
         const double s = sin(k * a) / (k * a), H = sd_ewald_wave_screen(&how, k * k);
@@ -180,7 +180,7 @@ static void draws_follow_their_key_alone(void **state)
   for (int k = 0; k < 3 * N; k++) F[k] = k % 5 - 2.0;
   const sd_ewald_sizes sizes = periodic_sizes(a, N);
   sd_ewald how;
-  assert_int_equal(sd_ewald_choose_positive(&box, &sizes, 3, 1e-3, &how), SD_OK);
+  assert_int_equal(sd_ewald_choose_positive(&box, &sizes, 3, 1e-3, SD_EWALD_POSITIVE, &how), SD_OK);
   periodic p;
   periodic_place(&p, x, a, w, N, 3, &how);
   const sd_random_key key = {5, SD_RANDOM_SPHERE, 9};
@@ -209,7 +209,7 @@ static void only_positive_parts_divide(void **state)
   periodic_place(&p, s.x, s.a, NULL, n, 3, &how);
   assert_false(sd_mobility_divides(&p.omega));
   periodic_free(&p);
-  assert_int_equal(sd_ewald_choose_positive(&box, &sizes, 3, 1e-3, &how), SD_OK);
+  assert_int_equal(sd_ewald_choose_positive(&box, &sizes, 3, 1e-3, SD_EWALD_POSITIVE, &how), SD_OK);
   assert_true(how.xi * how.largest <= SD_EWALD_POSITIVE * (1.0 + 1e-12));
   scene_free(&s);
 }

@@ -139,7 +139,8 @@ static void choose_positive(how *h, const cast *s)
   const sd_ewald_sizes sizes = sizes_of(h->row, s);
   h->engine = &sd_mobility_ewald;
   h->box = box_of(h->row, s);
-  assert_int_equal(sd_ewald_choose_positive(&h->box, &sizes, s->width, tolerance_of(h->row), &h->first), SD_OK);
+  assert_int_equal(sd_ewald_choose_positive(&h->box, &sizes, s->width, tolerance_of(h->row), SD_EWALD_POSITIVE, &h->first),
+                   SD_OK);
   h->reach = h->first.reach;
 }
 

@@ -16,6 +16,14 @@
 
 enum { BLOBS_MOST = 64 };
 
+/* Images of spheres within the films' range, as ghosts */
+typedef struct {
+  int n, count;
+  int owner[27 * BLOBS_MOST];
+  double drift[3 * 27 * BLOBS_MOST];
+  double x[3 * 27 * BLOBS_MOST], a[27 * BLOBS_MOST], w[27 * BLOBS_MOST];
+} blob_images;
+
 typedef struct {
   sd_multiblob m;
   int n;
@@ -34,6 +42,8 @@ typedef struct {
   sd_lubrication L;
   sd_two_sphere *functions;
   sd_films films;
+  /* what L asks for its ghosts */
+  blob_images *images;
 } blobs;
 
 static inline blobs *blobs_create(int points, int one_body, int n, const double *x, const double *a)
@@ -57,6 +67,7 @@ static inline void blobs_free(blobs *s)
 {
   free(s->r), free(s->at), free(s->b), free(s->M), free(s->forces), free(s->R);
   sd_lubrication_free(&s->L);
+  free(s->images);
   sd_two_sphere_free(s->functions);
   free(s);
 }
@@ -185,14 +196,6 @@ static inline void blobs_resistance(blobs *s)
   for (size_t j = 0; j < size; j++) blobs_collect(s, s->forces + j * N, s->R + j * size);
 }
 
-/* Images of spheres within the films' range, as ghosts */
-typedef struct {
-  int n, count;
-  int owner[27 * BLOBS_MOST];
-  double drift[3 * 27 * BLOBS_MOST];
-  double x[3 * 27 * BLOBS_MOST], a[27 * BLOBS_MOST], w[27 * BLOBS_MOST];
-} blob_images;
-
 static inline sd_status blobs_refresh(void *ctx, const double *rows, double *ghosts, int width)
 {
   const blob_images *g = ctx;
@@ -235,6 +238,8 @@ static inline void blobs_add_films(blobs *s, double range, const double *gradien
 {
   const int one_body = s->m.delta != 0.0;
   blob_images *g = blobs_images(s, range, gradient);
+  free(s->images);
+  s->images = g;
   if (!s->functions)
     assert_int_equal(sd_two_sphere_create(SD_FILM_LARGEST_RATIO, &s->functions), SD_OK);
   assert_int_equal(sd_films_create(s->m.n, one_body, s->functions, &s->films), SD_OK);
@@ -259,7 +264,7 @@ static inline void blobs_add_films(blobs *s, double range, const double *gradien
     V[j] = 0.0;
     for (int i = 0; i < s->size; i++) s->R[(size_t) j * (size_t) s->size + (size_t) i] += f[i];
   }
-  free(V), free(f), free(g);
+  free(V), free(f);
 }
 
 /* Velocities V [6 n] of the free spheres under F (NULL: none) in a flow of gradient G (NULL:

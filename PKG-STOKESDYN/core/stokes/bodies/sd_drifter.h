@@ -1,0 +1,58 @@
+/* Half steps of bodies that move at random, so that the mean of the velocities found there has the drift of
+ * their mobility, without a solve for it:
+ *
+ *   points move with   v'  = A^T y + v_0           A: sd_body_follow.h
+ *   films with         v'' = v' + P^-1 (f_L - K^T L K A^T y)
+ *   v_0 = A^T u + P^-1 (F + E - K^T L K A^T u)     what is not random, about
+ *
+ * y, f_L: random velocities at the points, random forces of films (sd_bodies_noise.h); E: what the flow takes
+ * off films (sd_lubrication.h). With M' at x + dt/2 v' and L at x + dt/2 v'', the mean displacement of one
+ * solve is kT div N dt more than without noise in second order:
+ *
+ *   M':  <(K N - M' A)_k ...>, and what is left is that of sd_body_follow.h
+ *   L:   <(K^T M'^-1 y + f_L) v''^T> = (1 - L P^-1) + L P^-1 = 1 for any symmetric P
+ *
+ * P: the sparse H of sd_tie.h where bodies are tied, N_b^-1 of those that are not, so that v'' is hindered as
+ * velocities are and films see no overlap. (Its incomplete factor would do for the mean, but differs with the
+ * number of ranks.)
+ * Source: reference of the project, noise-faster.md 1.2. */
+#ifndef SD_DRIFTER_H
+#define SD_DRIFTER_H
+
+#include "sd_body.h"
+#include "sd_body_follow.h"
+
+SD_BEGIN_C
+
+/* [A->shaped] bodies of A as they stand, or as they are in open space, and how each follows; NULL: a point of
+ * its own, which is itself */
+typedef struct {
+  const sd_body *body;
+  const sd_body_follow *const *follow;
+} sd_drifter;
+
+/* v [6 bodies] = A^T y, y [points]; 0 where a velocity is given */
+void sd_drifter_follow(const sd_bodies *A, const sd_drifter *d, const double *y, double *v);
+/* l [points] = A v */
+void sd_drifter_spread(const sd_bodies *A, const sd_drifter *d, const double *v, double *l);
+
+/* Velocities of the fluid and random ones at the points, forces and random forces on the spheres
+ * (NULL: 0); with a tie, where sd_tie_make has been, to this tolerance of sd_tie_solve. given [6 bodies]
+ * of those whose velocity is, NULL: they rest. v', v'' [6 bodies] out, velocities that are given among
+ * them. work [24 bodies + 12 spheres + points]. SD_OK; that of sd_tie_solve. */
+typedef struct {
+  const double *u, *y, *F, *f, *given;
+  double tolerance;
+} sd_drifter_push;
+sd_status sd_drifter_move(const sd_bodies *A, const sd_drifter *d, const sd_drifter_push *push,
+                          double *work, double *of_points, double *of_films);
+
+/* What the mean lacks where sum_k (d_k M') A_k is left, by differences: of kT sum_k (d_k M') A_k as slip and
+ * -kT sum_k (d_k K)^T A_k as load one term each, with l = A W / e, W random and of variance 1, the bodies at
+ * x + e W and part = kT/2, then at x - e W and part = -kT/2. slip [points] += part M' l, load [6 bodies] -=
+ * part K^T l. work [18 bodies + 6 spheres + 2 points]. SD_OK; that of A->apply. */
+sd_status sd_drifter_difference(const sd_bodies *A, const double *l, double part, double *work, double *slip,
+                                double *load);
+
+SD_END_C
+#endif
