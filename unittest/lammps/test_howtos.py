@@ -24,6 +24,7 @@ HOWTOS = {
     "mud": {"v_front": 0.02, "v_inner": 0.01, "v_outer": 0.01},
     "sph": {"c_kinetic": 0.5},
     "stream": {"v_surface": 0.04, "f_stream[4]": 0.6, "f_stream[8]": 0.35},
+    "waves": {"v_surface": 0.05, "f_water[4]": 0.6, "f_water[8]": 0.35},
     "rheology": {"f_mean[1]": 0.05, "f_mean[2]": 0.2, "f_mean[3]": 0.2},
     "suspension": {"v_down": 0.04, "f_move[1]": 0.25},
     "speed": {},
@@ -82,6 +83,11 @@ def test_a_howto_runs_as_it_stands(name, tmp_path):
     if name == "python":
         printed = re.findall(r"^    (\S.*)$", re.sub(r"```\n.*?```", "", PASTE.sub("", page), flags=re.S), re.M)
         assert said.splitlines() == ["rod.py"] + printed
+    if name == "waves":    # the closed form of the Stokes layer; grains that stick stay in the bed
+        assert float(re.search(r"largest error (\S+)", said).group(1)) < 5e-4
+        loose, stuck = [[float(q) for q in re.findall(r"^ *(?:6250|18750) +\S+ +(\S+)", table, re.M)]
+                        for table in said.split("Step v_surface")[1:] if "18750" in table]
+        assert len(loose) == len(stuck) == 2 and all(abs(b) < 0.01 * abs(a) for a, b in zip(loose, stuck))
     if name == "speed":
         errors = [float(error) for error in re.findall(r"^tolerance \S+ iterations \d+ error (\S+)", said, re.M)]
         assert len(errors) == 6 and errors[0] == 0.0 and all(a > b for a, b in zip(errors[1:], errors[2:]))
