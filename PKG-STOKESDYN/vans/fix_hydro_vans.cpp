@@ -152,6 +152,7 @@ void FixHydroVans::init()
   if (!set.has_grains()) check_radius();
   if (set.solves()) tell_steps();
   if (set.couple == VansSettings::TWO) tell_sizes();
+  tell_roughness();
   check_others();
   look_at_neighbours();
   tell_fall();

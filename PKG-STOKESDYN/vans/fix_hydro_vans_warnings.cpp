@@ -58,6 +58,34 @@ void FixHydroVans::tell_fall()
                  "sand, or write drag yade if you want that law");
 }
 
+/* Which roughness the law of the mixing length gives a bed of grains that do not move: the middle of
+ * two depths of water over one such bed (page vans_stream). The other laws are not known. */
+void FixHydroVans::tell_roughness()
+{
+  if (told_roughness || set.couple != VansSettings::TWO || set.upflow || set.yade()) return;
+  const char *name = nullptr;
+  double rough = 0.0;
+  switch (set.fluid.turbulence) {
+    case SD_VANS_LI_SAWAMOTO:
+      name = "li_sawamoto";
+      rough = set.law.felt_by_volume ? 1.2 : 0.9;
+      break;
+    case SD_VANS_NI_CAPART:
+      name = "ni_capart";
+      rough = 1.7;
+      break;
+    case SD_VANS_ROUSSEAU:
+      name = "rousseau";
+      rough = 12.0;
+      break;
+    default:
+      return;
+  }
+  told_roughness = true;
+  set.voice.tell(std::string("turbulence ") + name + ": a bed of fixed grains is about as rough as k_s = " +
+                 text(rough) + " grain diameters; flumes have 1 to 2");
+}
+
 /* What a coupling does, where it is not what the keywords seem to say, or takes seconds. */
 void FixHydroVans::tell_steps()
 {
