@@ -19,7 +19,6 @@ ellipsoids the exact values stand beside them (Oberbeck 1876, Jeffery 1922).
 import argparse
 import os
 import pathlib
-import struct
 import sys
 
 DEBIAN = "/usr/bin/python3"
@@ -30,121 +29,8 @@ except ImportError:         # Debian's python has it, another one on the PATH ne
         raise
     os.execv(DEBIAN, [DEBIAN] + sys.argv)
 
-
-class Error(Exception):
-    """What is wrong with a shape, for whoever gave it."""
-
-
-# --- surfaces of triangles --------------------------------------------------------------------------------------------------
-
-def read_stl(path, scale=1.0):
-    """[n, 3, 3] corners of the triangles of an STL file"""
-    try:
-        data = pathlib.Path(path).read_bytes()
-    except OSError as why:
-        raise Error(f"{path}: {why.strerror}") from None
-    count = struct.unpack("<I", data[80:84])[0] if len(data) >= 84 else 0
-    if len(data) == 84 + 50 * count and count:
-        rows = np.frombuffer(data, np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")]), count, 84)
-        return scale * rows["corners"].astype(float)
-    words = data.decode("ascii", "replace").split()
-    try:
-        corners = [[float(word) for word in words[k + 1:k + 4]] for k, word in enumerate(words) if word == "vertex"]
-        triangles = scale * np.array(corners).reshape(-1, 3, 3)
-    except ValueError:
-        raise Error(f"{path}: neither a binary STL file (84 + 50 n bytes) nor an ASCII one with three numbers after each 'vertex'") from None
-    if not len(triangles):
-        raise Error(f"{path}: there is no triangle in it")
-    return triangles
-
-
-def numbered(triangles):
-    """The corners as [n, 3] numbers, equal for corners at the same place to 1e-6 of the size; triangles without area are left out"""
-    size = np.ptp(triangles.reshape(-1, 3), axis=0).max()
-    _, number = np.unique(np.round(triangles.reshape(-1, 3) / (1e-6 * size)).astype(np.int64), axis=0, return_inverse=True)
-    number = number.reshape(-1, 3)
-    good = (number[:, 0] != number[:, 1]) & (number[:, 1] != number[:, 2]) & (number[:, 2] != number[:, 0])
-    return number[good], triangles[good]
-
-
-def closed(triangles, name):
-    """The triangles with normals that point outwards, or an error: each edge must belong to two triangles, once in each direction"""
-    if not np.isfinite(triangles).all():
-        raise Error(f"{name}: a corner is not finite")
-    number, triangles = numbered(triangles)
-    edges = np.concatenate([number[:, [0, 1]], number[:, [1, 2]], number[:, [2, 0]]])
-    pairs, times = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
-    open_edges, crossings = (times == 1).sum(), (times > 2).sum()
-    if open_edges or crossings:
-        where = triangles.reshape(-1, 3)[np.argmax((number.ravel()[:, None] == pairs[np.argmax(times != 2)]).any(axis=1))]
-        raise Error(f"{name}: the surface is not closed: {open_edges} edges belong to one triangle only and {crossings} to more than two, "
-                    f"the first near {where.round(6).tolist()}. Fill its holes and join its parts (for example in MeshLab or Blender)")
-    if len(np.unique(edges, axis=0)) != len(edges):
-        raise Error(f"{name}: the triangles do not turn in one sense. Make their normals consistent (for example in MeshLab or Blender)")
-    return triangles if volume_and_centre(triangles)[0] > 0 else triangles[:, ::-1]
-
-
-def volume_and_centre(triangles):
-    """By the tetrahedra that the triangles form with the origin"""
-    six = np.einsum("ni,ni->n", triangles[:, 0], np.cross(triangles[:, 1], triangles[:, 2]))
-    return six.sum() / 6, (six[:, None] * triangles.sum(axis=1)).sum(axis=0) / 4 / six.sum()
-
-
-def sphere_mesh(n):
-    """Triangles of the unit sphere: an octahedron whose edges are cut into n"""
-    corner = [np.array(v, float) for v in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
-    faces = []
-    for signs in np.array(np.meshgrid([1, -1], [1, -1], [1, -1])).reshape(3, -1).T:
-        a, b, c = (s * v for s, v in zip(signs, corner))
-        p = {(i, j): (i * a + j * b + (n - i - j) * c) / n for i in range(n + 1) for j in range(n + 1 - i)}
-        for i in range(n):
-            for j in range(n - i):
-                some = [(p[i, j], p[i + 1, j], p[i, j + 1])]
-                some += [(p[i + 1, j], p[i + 1, j + 1], p[i, j + 1])] if i + j < n - 1 else []
-                faces += some if signs.prod() > 0 else [face[::-1] for face in some]
-    x = np.array(faces)
-    return x / np.linalg.norm(x, axis=2, keepdims=True)
-
-
-def profile_mesh(z, r, n=96):
-    """Triangles of the body of revolution whose surface goes through the rings (z, r), from bottom to top, about the axis z"""
-    z, r = np.concatenate([[z[0]], z, [z[-1]]]), np.concatenate([[0], r, [0]])
-    phi = 2 * np.pi * np.arange(n + 1) / n
-    ring = np.stack([np.outer(r, np.cos(phi)), np.outer(r, np.sin(phi)), np.repeat(z[:, None], n + 1, axis=1)], axis=2)
-    ring[:, -1] = ring[:, 0]
-    a, b, c, d = ring[:-1, :-1], ring[:-1, 1:], ring[1:, 1:], ring[1:, :-1]
-    return np.concatenate([np.stack([a, b, c], axis=2).reshape(-1, 3, 3), np.stack([a, c, d], axis=2).reshape(-1, 3, 3)])
-
-
-def rod(length, radius):
-    angle = np.linspace(-np.pi / 2, np.pi / 2, 33)
-    low, high = angle[:17], angle[16:]
-    along = np.linspace(-length / 2, length / 2, max(2, int(6 * length / radius)))[1:-1]
-    z = np.concatenate([radius * np.sin(low) - length / 2, along, radius * np.sin(high) + length / 2])
-    return profile_mesh(z, np.concatenate([radius * np.cos(low), radius + 0 * along, radius * np.cos(high)]))
-
-
-def disc(radius, thickness):
-    out = np.linspace(0, radius, 25)[1:]
-    up = np.linspace(-thickness / 2, thickness / 2, 6)[1:-1]
-    z = np.concatenate([0 * out - thickness / 2, up, 0 * out + thickness / 2])
-    return profile_mesh(z, np.concatenate([out, radius + 0 * up, out[::-1]]))
-
-
-def cube(edge, n=16):
-    s = np.linspace(-0.5, 0.5, n + 1) * edge
-    u, v = (w.ravel() for w in np.meshgrid(s[:-1], s[:-1], indexing="ij"))
-    h, faces = edge / n, []
-    for axis in range(3):
-        for side in (-1, 1):
-            def at(du, dv):
-                x = np.empty((len(u), 3))
-                x[:, axis], x[:, (axis + 1) % 3], x[:, (axis + 2) % 3] = side * edge / 2, u + du * h, v + dv * h
-                return x
-            for three in ((at(0, 0), at(1, 0), at(1, 1)), (at(0, 0), at(1, 1), at(0, 1))):
-                faces.append(np.stack(three[::side], axis=1))
-    return np.concatenate(faces)
-
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from surfaces import Error, SHAPES, cube, inertia, surface, volume_and_centre    # noqa: E402,F401
 
 # --- the fill ---------------------------------------------------------------------------------------------------------------
 
@@ -246,17 +132,6 @@ def write_data(path, centre, radius, density):
     path.write_text(f"inscribed spheres, by fill.py\n\n{len(radius)} atoms\n1 atom types\n{box}\nAtoms # hybrid\n\n{rows}")
 
 
-def inertia(triangles, density):
-    """Of the body about its centre of mass: xx yy zz xy xz yz, by tetrahedra"""
-    volume, middle = volume_and_centre(triangles)
-    t = triangles - middle
-    six = np.einsum("ni,ni->n", t[:, 0], np.cross(t[:, 1], t[:, 2]))
-    s = t.sum(axis=1)
-    second = (np.einsum("n,ni,nj->ij", six, s, s) + np.einsum("n,nki,nkj->ij", six, t, t)) / 120
-    I = density * (np.trace(second) * np.eye(3) - second)
-    return density * volume, middle, I[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
-
-
 def write_molecule(path, centre, radius, triangles, density):
     mass, middle, I = inertia(triangles, density)
     def rows(values):
@@ -264,22 +139,6 @@ def write_molecule(path, centre, radius, triangles, density):
     path.write_text(f"inscribed spheres, by fill.py\n\n{len(radius)} atoms\n{mass:.9g} mass\n" +
                     " ".join(f"{v:.9g}" for v in middle) + " com\n" + " ".join(f"{v:.9g}" for v in I) + " inertia\n\n" +
                     f"Coords\n\n{rows(centre)}\nTypes\n\n{rows([1] * len(radius))}\nDiameters\n\n{rows(2 * radius)}")
-
-
-SHAPES = {"ellipsoid": 3, "rod": 2, "disc": 2, "cube": 1}
-
-
-def surface(shape, words):
-    """Triangles of the shape, closed"""
-    if shape == "stl":
-        if len(words) not in (1, 2):
-            raise Error("stl needs a file, and may have a scale after it")
-        return closed(read_stl(words[0], float(words[1]) if len(words) == 2 else 1.0), words[0])
-    sizes = [float(word) for word in words]
-    if len(sizes) != SHAPES[shape] or min(sizes) <= 0:
-        raise Error(f"{shape} needs {SHAPES[shape]} sizes > 0, not {' '.join(words)}")
-    triangles = sphere_mesh(24) * sizes if shape == "ellipsoid" else {"rod": rod, "disc": disc, "cube": cube}[shape](*sizes)
-    return closed(triangles, shape)
 
 
 def main(argv=None):
