@@ -7,10 +7,11 @@ from relations_scene import Scene, until_settled
 
 # The first value of an option is the simplest one: to it a failing case goes back, one option after the other.
 OPTIONS = {
-    "space": ["open", "shrink", "wall", "periodic", "tilt", "deform"],
-    "spheres": [2, 5, 9], "clumps": [0, 1, 3, 3], "radii": ["equal", "unlike"],
+    "space": ["open", "shrink", "wall", "periodic", "tilt", "deform", "floor", "slit", "flux"],
+    "spheres": [2, 5, 9], "clumps": [0, 1, 3, 3], "radii": ["equal", "unlike", "shells"],
     "pairs": ["inf", "inf", "inf", "inf", "clumps_only", "taper", "list"],
-    "model": ["", "rotation yes", "multiblob 12", "multiblob 12", "multiblob 42"], "films": ["no", "no", "yes"],
+    "model": ["", "rotation yes", "multiblob 12", "multiblob 12", "multiblob 42",
+              "multiblob 42 half", "multiblob 12 multiblob_most 42"], "films": ["no", "no", "yes"],
     "rigid": ["no", "yes", "yes", "auto", "shell"],
     "motion": ["forces", "forces inside", "ab2", "ab2", "euler", "midpoint"],
     "noise": ["no", "no", "yes"], "held": ["no", "no", "still", "moved"], "spin": ["no", "no", "no", "all", "slips"],
@@ -21,6 +22,7 @@ OPTIONS = {
     "steps": [2, 4, 7],
 }
 CLOSED = ("periodic", "tilt", "deform")
+SLABS = ("floor", "slit", "flux")              # periodic in two directions
 
 
 @until_settled
@@ -57,16 +59,22 @@ def lawful(o, no):
     no(o["space"] == "deform", flow="box", adapt="no", held="no", contacts="no")
     no(o["space"] != "deform" and o["flow"] == "box", flow="rest")
     no(o["space"] == "wall" and o["flow"] == "uniform", flow="shear")
-    no(o["space"] in CLOSED and o["far"] == "direct", far="auto")
-    no(o["space"] in CLOSED and o["far"] == "auto" and o["pairs"] == "inf", far="ewald")
+    slab = o["space"] in SLABS
+    no(slab and o["pairs"] != "inf", pairs="inf")
+    no(slab and (o["rigid"] == "shell" or o["model"] == "rotation yes"), model="multiblob 12",
+       rigid="yes" if o["rigid"] == "shell" else o["rigid"])
+    no(slab and o["flow"] == "uniform", flow="shear")
+    no(slab and o["look"] == "stress", look="nothing")
+    no(o["space"] in CLOSED + SLABS and o["far"] == "direct", far="auto")
+    no(o["space"] in CLOSED + SLABS and o["far"] == "auto" and o["pairs"] == "inf", far="ewald")
     no(o["space"] in CLOSED and o["flow"] == "shear", flow="uniform")
     no(o["space"] == "wall" and o["far"] == "ewald" and o["model"] == "rotation yes", far="auto")
     no(o["space"] == "wall" and o["model"] == "" and o["far"] == "ewald", far="auto")
     no(o["select"] != "all" and (o["clumps"] or overdamped), select="all")
     no(o["look"] == "stress" and not (blobs and o["space"] in CLOSED), look="nothing")
     no(o["look"] == "field" and o["space"] == "wall", look="nothing")
-    no(o["model"] == "multiblob 42", spheres=min(o["spheres"], 5), clumps=min(o["clumps"], 1))
-    no(o["space"] in CLOSED and o["visc"] == "formula" and o["noise"] == "yes", visc="number")
+    no(o["model"].startswith("multiblob 42"), spheres=min(o["spheres"], 5), clumps=min(o["clumps"], 1))
+    no(o["space"] in CLOSED + SLABS and o["visc"] == "formula" and o["noise"] == "yes", visc="number")
     no(o["contacts"] == "yes" and o["space"] in CLOSED and o["films"] == "yes", contacts="no")
 
 
@@ -77,7 +85,7 @@ def places(o, seed):
     def free(p, a):
         # LAMMPS makes no atom outside of the box; those of a clump are on one side of its faces
         most = 6.4 if o["space"] in CLOSED[1:] else 8.8
-        behind = o["space"] == "wall" and p[2] - a < -8.2
+        behind = o["space"] in ("wall",) + SLABS and (p[2] - a < -8.2 or p[2] + a > 8.9)
         return not behind and all(abs(c) < most for c in p) and all(np.linalg.norm(p - q) > 1.03 * (a + b) for q, b, _ in made)
 
     def point():
@@ -92,12 +100,13 @@ def places(o, seed):
     def clump(m):
         n, axis = R.choice([2, 3, 3, 4]), np.array([R.gauss(0, 1) for _ in range(3)])
         c, axis = point(), axis / np.linalg.norm(axis)
-        return [(c + 1.6 * i * axis + (np.array([0, 0, 0.9 * (i % 2)]) if n == 4 else 0.0), 1.0, m) for i in range(n)]
+        return [(c + 1.6 * i * axis + (np.array([0, 0, 0.9 * (i % 2)]) if n == 4 else 0.0),
+                 0.62 if o["radii"] == "shells" and i % 2 else 1.0, m) for i in range(n)]
 
     for m in range(o["clumps"]):
         draw(lambda: clump(m + 1))
     for _ in range(o["spheres"]):
-        draw(lambda: [(point(), R.choice([1.0, 0.6, 1.2]) if o["radii"] == "unlike" else 1.0, 0)])
+        draw(lambda: [(point(), R.choice({"equal": [1.0], "unlike": [1.0, 0.6, 1.2], "shells": [1.0, 0.35, 0.6, 1.7]}[o["radii"]]), 0)])
     return made
 
 
@@ -112,8 +121,9 @@ def pair_words(o):
     words += {"rest": "", "uniform": " fluid_velocity <V 0.3 0.1 -0.2>", "box": " fluid_velocity box"}.get(
         o["flow"], " fluid_velocity v_ux v_uy v_uz")
     words += {"all": "", "group": " group some", "region": " region zone"}[o["select"]]
-    words += f" far_field {o['far']}" * (o["far"] != "auto") + " far_field_tolerance 1e-11" * (o["far"] == "ewald")
-    words += " wall <side zlo -8.3>" * (o["space"] == "wall") + " add_force yes" * (o["motion"] == "forces inside")
+    words += f" far_field {o['far']}" * (o["far"] != "auto") + (" far_field_tolerance 1e-8" if o["space"] in SLABS else " far_field_tolerance 1e-11") * (o["far"] == "ewald")
+    words += " wall <side zlo -8.3>" * (o["space"] in ("wall", "floor")) + " add_force yes" * (o["motion"] == "forces inside")
+    words += " wall <side zlo -8.3> <side zhi 9.0>" * (o["space"] in ("slit", "flux")) + " flow flux" * (o["space"] == "flux")
     return words + f" update_every {o['every']}" * (o["every"] != 1)
 
 
@@ -128,8 +138,9 @@ def build(options, seed):
     lone = [k + 1 for k, a in enumerate(s.atoms) if not a["molecule"]]
     closed = o["space"] in CLOSED
     s.head = ["units lj", "atom_style hybrid sphere bond" + " dipole" * (o["directions"] == "mu")]
-    s.make = [f"boundary <each {dict(open='f f f', wall='f f f', shrink='m m m').get(o['space'], 'p p p')}>"]
-    half = "-9 9 -9 9 -9 9" if closed else "-30 30 -30 30 -30 30"
+    slab = o["space"] in SLABS
+    s.make = [f"boundary <each {'p p f' if slab else dict(open='f f f', wall='f f f', shrink='m m m').get(o['space'], 'p p p')}>"]
+    half = "-9 9 -9 9 -9 9" if closed else "-9 9 -9 9 -30 30" if slab else "-30 30 -30 30 -30 30"
     tilt = " <L 1.5> <L -1.0> <L 2.0>" if o["space"] in CLOSED[1:] else ""
     s.make.append(f"region box {'prism' if tilt else 'block'} <block {half}>{tilt}")
     s.make += ["create_box 1 box bond/types 1 extra/bond/per/atom 4 extra/special/per/atom 4"]
@@ -138,6 +149,9 @@ def build(options, seed):
     s.define = [f"neighbor <L {o['skin']}> bin"]
     if closed:
         flow, eta = "0.3*sin(2*PI*Z/18) 0 0.1*cos(2*PI*X/18)", "1.3+0.05*sin(2*PI*X/18)"
+    elif slab:
+        height = "(Z+8.3)" if o["space"] == "floor" else "0.1*(Z+8.3)*(9-Z)"
+        flow, eta = f"0.2*{height} 0.05*{height} 0", "1.3+0.05*sin(2*PI*X/18)"
     else:
         flow, eta = ("0.2*(Z+8.3) 0.05*(Z+8.3) 0" if o["space"] == "wall" else "0.2*Z 0.1*X 0"), "1.3+0.05*sin(0.3*X)*cos(0.2*Y)"
     s.define += [f"<field u V {flow}>"] * (o["flow"] == "shear") + [f"variable eta atom <one eta {eta}>"] * (o["visc"] == "formula")
@@ -168,8 +182,9 @@ def build(options, seed):
     s.other = "cut_off_distance inf visc <eta 2> relative_tolerance 1e-6 " + " fluid_velocity box" * (o["flow"] == "box")
     s.other += " add_force yes" * (o["motion"] == "forces inside")
     s.other += " rigid_clumps yes rotation yes" if o["clumps"] else " rotation yes" if turning else ""
-    if o["look"] == "stress":
-        s.other = s.other.replace("rotation yes", "") + " multiblob 42"
+    if o["look"] == "stress" or slab:
+        s.other = s.other.replace("rotation yes", "") + (" multiblob 42" if o["look"] == "stress" else " multiblob 12" if turning else "")
+    s.other += " wall <side zlo -8.3>" * (o["space"] == "floor") + " wall <side zlo -8.3> <side zhi 9.0>" * (o["space"] in ("slit", "flux"))
     s.dt, s.steps, s.tolerance = 0.004, o["steps"], 2e-5 if o["noise"] == "yes" or o["films"] == "yes" else 2e-6
     return s
 
