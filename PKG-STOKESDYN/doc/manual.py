@@ -308,8 +308,8 @@ def wide_pages(folder):
 
 
 def searches():
-    """(query, the pages of which one must be found): keywords and first words of messages, as unittest/lammps/test_pages.py has them."""
-    sys.path.insert(0, str(TOP / "unittest" / "lammps"))
+    """(query, the pages of which one must be found): keywords and first words of messages, as unittest/lammps/common/test_pages.py has them."""
+    sys.path[:0] = [str(TOP / "unittest" / "lammps"), str(TOP / "unittest" / "lammps" / "common")]
     import test_pages
     for room, keyword in test_pages.KEYWORDS:
         yield keyword, test_pages.ROOMS[room]

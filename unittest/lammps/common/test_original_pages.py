@@ -77,7 +77,7 @@ def test_the_fixes_of_the_original_page_run(tmp_path):
 
 
 def test_each_name_of_yades_page_is_in_the_table_of_attributes():
-    page = (pathlib.Path(__file__).resolve().parents[2] / "PKG-STOKESDYN" / "doc" / "vans_yade.md").read_text()
+    page = (pathlib.Path(__file__).resolve().parents[3] / "PKG-STOKESDYN" / "doc" / "vans_yade.md").read_text()
     table = page[page.index("## Attributes of Yade"):page.index("## Rules yade")]
     missing = [name for name in YADE if not re.search(rf"\b{name}\b", table)]
     assert not missing

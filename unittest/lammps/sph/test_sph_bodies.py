@@ -11,7 +11,7 @@ from host import at_most
 from sph_tools import by_id, fix_by_id, mpirun, run, start
 from test_sph_input import message
 
-EXAMPLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "examples", "floating_box")
+EXAMPLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "examples", "floating_box")
 sys.path.insert(0, EXAMPLE)
 
 FLOORS = """

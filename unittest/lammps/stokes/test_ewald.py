@@ -12,7 +12,7 @@ import pytest
 from host import allowed
 from system import LammpsError, Spheres, dump_lines, input_lines, lmp, note, read_dump
 
-DATA = pathlib.Path(__file__).resolve().parents[1] / "data" / "ewald"
+DATA = pathlib.Path(__file__).resolve().parents[2] / "data" / "ewald"
 SCENES = ["p01", "p02", "p04", "p05", "p07", "p10", "p12", "p14"]
 ALL = "cut_off_distance inf algorithm 2 max_iter 1000"
 FORCES = "x y z vx vy vz f_drag[1] f_drag[2] f_drag[3] f_drag[7] f_drag[8] f_drag[9]"

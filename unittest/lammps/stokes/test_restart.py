@@ -238,7 +238,7 @@ def test_write_data_and_read_data(simulation, tmp_path):
 
 # --- files of another version ----------------------------------------------------------------------------------------------
 
-VERSION = (pathlib.Path(__file__).resolve().parents[2] / "PKG-STOKESDYN" / "VERSION").read_bytes().strip()
+VERSION = (pathlib.Path(__file__).resolve().parents[3] / "PKG-STOKESDYN" / "VERSION").read_bytes().strip()
 
 
 def changed_restart(tmp_path, old, new):

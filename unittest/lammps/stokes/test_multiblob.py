@@ -10,7 +10,7 @@ import pytest
 import model
 from system import LammpsError, Spheres, dump_lines, input_lines, lmp, read_dump
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "examples"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "examples"))
 import flow_grid    # noqa: E402
 
 MOVE = "fix move all stokes_dynamics/overdamped"

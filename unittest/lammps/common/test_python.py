@@ -12,7 +12,7 @@ import pytest
 import stokesdyn
 from system import environment
 
-TOP = pathlib.Path(__file__).resolve().parents[2]
+TOP = pathlib.Path(__file__).resolve().parents[3]
 BUILD = pathlib.Path(os.environ["LAMMPS_PLUGIN_PATH"])
 CLUMPS = sorted((TOP / "examples" / "sedimentation" / "clumps").glob("*.mol"))
 

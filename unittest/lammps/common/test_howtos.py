@@ -12,7 +12,7 @@ import pytest
 
 from system import environment
 
-TOP = pathlib.Path(__file__).resolve().parents[2]
+TOP = pathlib.Path(__file__).resolve().parents[3]
 DOC = TOP / "PKG-STOKESDYN" / "doc"
 
 # page -> how far each column of its tables may be off (relative)

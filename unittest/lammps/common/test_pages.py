@@ -7,7 +7,7 @@ import pytest
 
 import neighbour_tables
 
-PACKAGE = pathlib.Path(__file__).resolve().parents[2] / "PKG-STOKESDYN"
+PACKAGE = pathlib.Path(__file__).resolve().parents[3] / "PKG-STOKESDYN"
 PAGES = {path.name: path.read_text() for path in sorted((PACKAGE / "doc").glob("*.md"))}
 EVERYWHERE = "howto_trouble.md"    # messages that all styles share
 ROOMS = {    # the pages on which the messages of a folder may stand

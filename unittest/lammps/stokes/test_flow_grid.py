@@ -11,7 +11,7 @@ import model
 from system import LammpsError, Spheres, chain, dump_lines, input_lines, largest_difference, lmp, read_dump
 from test_rotation import torques
 
-EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples"
+EXAMPLES = pathlib.Path(__file__).resolve().parents[3] / "examples"
 sys.path.insert(0, str(EXAMPLES))
 import flow_grid    # noqa: E402
 

@@ -8,7 +8,7 @@ import pytest
 
 from system import Spheres, input_lines, lmp
 
-SCARCE = pathlib.Path(__file__).resolve().with_name("scarce_memory.cpp")
+SCARCE = pathlib.Path(__file__).resolve().parents[1] / "scarce_memory.cpp"
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import pytest
 
 from system import environment
 
-EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "examples")
+EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "examples")
 
 
 @pytest.mark.parametrize("name", ["channel_flow", "drops", "liggghts", "river_bump", "sph_order", "still_water", "taylor_green"])

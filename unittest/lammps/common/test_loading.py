@@ -137,7 +137,7 @@ def names_of_mpi(*files):
 
 
 def test_styles_ask_of_mpi_only_what_a_lammps_without_mpi_has():
-    files = glob.glob(os.path.join(os.path.dirname(__file__), "../../PKG-STOKESDYN/**"), recursive=True)
+    files = glob.glob(os.path.join(os.path.dirname(__file__), "../../../PKG-STOKESDYN/**"), recursive=True)
     styles = [file for file in files if file.endswith((".c", ".h", ".cpp"))]
     assert len(styles) > 50 and not names_of_mpi(*styles) - OF_MPI
 
