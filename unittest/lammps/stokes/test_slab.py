@@ -287,6 +287,103 @@ def test_shells_in_a_slit_put_up_the_gradient_of_their_points(simulation):
     assert p == pytest.approx(6 / (3600 * H ** 3) * (11 * 19 - 1 / 3) * np.array(F[:2]), rel=1e-3)
 
 
+# --- streams, and the stress that spheres put into them -----------------------------------------------------------------
+
+@pytest.mark.parametrize("more", ["", "multiblob 12"])
+def test_a_sphere_in_the_middle_of_a_couette_flow(simulation, more):
+    """Walls that go with the fluid, without films: half as fast as they are, turning more slowly than the fluid; and seen from the other wall"""
+    v = []
+    for formula in ("0.3*z", "0.3*(z-5)"):
+        style = f"cut_off_distance inf visc {ETA!r} relative_tolerance 1e-8 far_field_tolerance 1e-8 wall zlo 0 zhi 5 fluid_velocity v_u 0 0 {more}"
+        sim = fall(simulation, Spheres([(1, 2, 2.5), (7, 8, 1.4)]), (0, 0, 0), style, cell(12, -1, 6), before_pair=f"variable u atom {formula}")
+        v.append(np.hstack([sim.v, sim.atom("omega")]))
+    assert v[0] - v[1] == pytest.approx(np.array([(1.5, 0, 0, 0, 0, 0)] * 2), abs=1e-8)
+    alone = fall(simulation, Spheres([(1, 2, 2.5)]), (0, 0, 0), style, cell(12, -1, 6), before_pair="variable u atom 0.3*z")
+    assert alone.v[0] == pytest.approx((0.75, 0, 0), abs=1e-7)
+    if more:
+        assert 0.12 < alone.atom("omega")[0, 1] < 0.15
+
+
+def test_a_shell_in_the_middle_of_a_poiseuille_flow(simulation):
+    """As Faxen's law says, u + a^2/6 u'', but for the third power of its size"""
+    style = f"cut_off_distance inf visc {ETA!r} relative_tolerance 1e-7 multiblob 42 lubrication yes wall zlo 0 zhi 12 fluid_velocity v_u 0 0"
+    sim = fall(simulation, Spheres([(1, 2, 6.0)]), (0, 0, 0), style, cell(40, -1, 13), before_pair="variable u atom z*(12-z)")
+    assert sim.v[0] == pytest.approx((36 - 1 / 3, 0, 0), abs=0.05)
+
+
+@pytest.mark.parametrize("wall, formula, more, message", [
+    ("wall zlo 0 zhi 5", "v_u 0 0", "multiblob 12 lubrication yes", "the fluid moves along the wall zhi at 5, where its velocity is 1 of the largest, "
+     "and the films of keyword lubrication are those of walls at rest"),
+    ("wall zlo 0", "0 0 v_u", "", None), ("wall zlo 0", "v_u 0 0", "multiblob 12 lubrication yes", None),
+    ("wall zlo -1", "0 0 v_u", "", "nothing flows through the wall zlo at -1, and its component z there is 0.4 of the largest velocity: give one that is 0")])
+def test_a_stream_that_walls_do_not_know_is_named(simulation, wall, formula, more, message):
+    def move():
+        fall(simulation, Spheres([(1, 2, 2.5)]), (0, 0, 0), f"cut_off_distance inf visc 1 fluid_velocity {formula} {wall} {more}", cell(12, -2, 6),
+             before_pair="variable u atom 0.3*z")
+    if message is None:
+        return move()
+    with pytest.raises(LammpsError, match=message):
+        move()
+
+
+@pytest.mark.parametrize("heights", [(2.5,), (2.5, 1.4)])
+@pytest.mark.parametrize("component", [0, 2])
+def test_a_velocity_that_is_stored_for_atoms_is_not_known_at_the_wall(simulation, component, heights):
+    """As of a CFD code, which gives it where the sphere is: it moves nothing on the wall, and the sphere is where it would be by a formula."""
+    spheres = Spheres([(1 + 5 * k, 2, z) for k, z in enumerate(heights)])
+    words = ["0", "0", "0"]
+    words[component] = "v_u"
+    store = ["fix cfd all property/atom d_u", "compute cfd all property/atom d_u", "variable u atom c_cfd"]
+    store[1:1] = [f"set atom {k + 1} d_u {0.1 * z * z!r}" for k, z in enumerate(heights)]
+    v = [fall(simulation, spheres, (0, 0, 0), f"cut_off_distance inf visc 1 relative_tolerance 1e-9 far_field_tolerance 1e-9 {FLOOR} "
+              f"fluid_velocity {' '.join(words)}", cell(12, -2, 6), before_pair=lines).v for lines in ("\n".join(store), "variable u atom 0.1*z*z")]
+    assert v[0] == pytest.approx(v[1], abs=1e-7)
+    fall(simulation, spheres, (0, 0, 0), f"cut_off_distance inf visc 1 multiblob 12 lubrication yes {FLOOR} fluid_velocity {' '.join(words)}",
+         cell(12, -2, 6), before_pair="\n".join(store))
+
+
+@pytest.mark.parametrize("words, message", [("0 0 v_u", "nothing flows through the wall zlo at 0, and its component z there is 1 of the largest"),
+                                            ("v_u 0 0", "the fluid moves along the wall zlo at 0, where its velocity is 1 of the largest")])
+@pytest.mark.parametrize("boundary", ["p p f", "f f f"])
+def test_one_number_for_all_by_a_variable_is_looked_at(simulation, words, message, boundary):
+    sim = simulation(Spheres([(1, 2, 2.5)]), f"cut_off_distance inf visc 1 multiblob 12 lubrication yes {FLOOR} fluid_velocity {words}", fix=False,
+                     dt=1e-9, box=cell(12, -2, 6), boundary=boundary, before_pair="variable u equal 0.3")
+    with pytest.raises(LammpsError, match=message):
+        sim.commands([MOVE]).run()
+
+
+def moments(simulation, spheres, style, box, boundary, F=(0, 0, 0)):
+    sim = simulation(spheres, f"{style} visc 0.7 multiblob 12 relative_tolerance 1e-8 fluid_velocity v_u 0 0", fix=False, dt=1e-9, box=box,
+                     boundary=boundary, before_pair="variable u atom 0.3*z")
+    sim.commands(pull(np.broadcast_to(np.array(F, float), spheres.x.shape)) + [MOVE, "compute S all stokes_dynamics/stress",
+                                                                               "compute most all reduce max c_S[1]",
+                                                                               "thermo_style custom step c_most"]).run()
+    return np.array(sim.lmp.numpy.extract_compute("S", 1, 2))[:sim.n][np.argsort(sim.ids())][:, :12].copy()
+
+
+@pytest.mark.parametrize("walls, z", [("wall zlo 0", 20.0), ("wall zlo 0 zhi 40", 20.0)])
+def test_the_first_moment_of_a_shell_far_from_walls(simulation, walls, z):
+    """-20/3 pi eta a^3 E"""
+    S = moments(simulation, Spheres([(1, 2, z)]), f"cut_off_distance inf {walls}", cell(40, -1, 41), "p p f")
+    assert S[0, [0, 1, 2, 3, 4, 5]] == pytest.approx(-20 / 3 * np.pi * 0.7 * np.array([0, 0, 0, 0, 0.15, 0]), abs=0.02)
+
+
+def test_moments_in_a_wide_cell_are_those_in_open_fluid_above_the_floor(simulation):
+    """What images of a stresslet at the floor do falls with the fourth power of the distance."""
+    spheres = Spheres([(1, 1, 1.2), (3.3, 1, 1.5)])
+    box = [(-30.0, 30.0), (-30.0, 30.0), (-1.0, 30.0)]
+    for F in ((0, 0, 0), (0, 0, -1)):
+        for films in ("", "lubrication yes"):
+            wide, open_ = (moments(simulation, spheres, f"cut_off_distance inf wall zlo 0 {films}", box, b, F) for b in ("p p f", "f f f"))
+            assert wide == pytest.approx(open_, abs=2e-3 * np.abs(open_).max())
+
+
+def test_the_mean_stress_of_a_slab_has_no_volume(simulation):
+    sim = simulation(Spheres([(1, 1, 2)]), f"cut_off_distance inf visc 1 multiblob 12 {FLOOR}", box=cell(12), boundary="p p f", fix=False, dt=0.1)
+    with pytest.raises(LammpsError, match="its vector is an average over a periodic box, and this box is not periodic; the per-atom array needs no"):
+        sim.commands([MOVE, "compute S all stokes_dynamics/stress", "thermo_style custom step c_S[1]"]).run()
+
+
 # --- noise --------------------------------------------------------------------------------------------------------------
 
 def test_noise_in_a_slit_has_the_covariance_of_the_products(simulation):
