@@ -11,6 +11,13 @@ static double squared(const double *x, int i, int j)
   return sd_distance_squared(x + 3 * (long) i, x + 3 * (long) j);
 }
 
+/* The same to seven digits, for the order: in rigid clumps and lattices distances are equal but for rounding,
+ * which is another one on other ranks, and ties go by index. */
+static double key(const double *x, int i, int j)
+{
+  return (float) squared(x, i, j);
+}
+
 /* The distances at which spheres come only shrink, and the cells follow: whenever the reach has
  * halved they are made as wide as it is now, so that a ball never meets more than a few of them,
  * and they are filled anew once for each scale that the scene has. Returns 1 when they are new and
@@ -59,11 +66,11 @@ static void sink(heap *h, int i)
  * filled; to sink all parents from the last on makes it one. */
 static void heap_from(heap *h, const double *x, int first, double *sq)
 {
-  for (int k = 0; k < h->count; k++) h->key[k] = sq[h->sphere[k]] = squared(x, h->sphere[k], first);
+  for (int k = 0; k < h->count; k++) h->key[k] = sq[h->sphere[k]] = key(x, h->sphere[k], first);
   for (int k = h->count / 2; k >= 0; k--) sink(h, k);
 }
 
-/* sq [n] is the distance squared of each sphere that is left from those taken so far. When the
+/* sq [n] is the distance squared, key(), of each sphere that is left from those taken so far. When the
  * farthest is taken, at the distance `reach`, only spheres nearer to it than that can come nearer;
  * their keys in the heap stay too large until they reach the top. The cells hold all that are left
  * and some that are not, which does no harm. */
@@ -89,7 +96,7 @@ static void take_farthest_first(const double *x, heap *h, sd_cells *c, double *s
     if (shrink(c, corner, reach, extent))
       for (int k = 0; k < h->count; k++) sd_cells_add(c, x, h->sphere[k]);
     for (sd_cells_walk w = sd_cells_near(c, x + 3 * (long) i, reach); sd_cells_step(c, &w);)
-      for (int j = w.first; j >= 0; j = c->next[j]) sq[j] = fmin(sq[j], squared(x, i, j));
+      for (int j = w.first; j >= 0; j = c->next[j]) sq[j] = fmin(sq[j], key(x, i, j));
   }
 }
 

@@ -44,8 +44,8 @@ static void at_most(int count, int limit, const char *what)
   if (count > limit) fail_msg("%s: %d iterations, at most %d", what, count, limit);
 }
 
-/* By brute force: each sphere is the one farthest from all before it, the smaller index first, and sees those of them that are
- * within 1.5 times that distance. */
+/* By brute force: each sphere is the one farthest from all before it, to seven digits, the smaller index first, and sees those of
+ * them that are within 1.5 times that distance. */
 static void spheres_come_farthest_first(void **state)
 {
   (void) state;
@@ -80,7 +80,7 @@ static void spheres_come_farthest_first(void **state)
         double sq = 0.0;
         for (int d = 0; d < 3; d++) sq += pow(s.x[3 * i + d] - s.x[3 * far + d], 2);
         near += taken[i] && sq <= reach;
-        if (s.a[i] > 0.0) best[i] = fmin(best[i], sq);
+        if (s.a[i] > 0.0) best[i] = fmin(best[i], (float) sq);
       }
       taken[far] = 1;
       assert_int_equal(rows.first[k + 1] - rows.first[k], 1 + near);
@@ -88,6 +88,34 @@ static void spheres_come_farthest_first(void **state)
     sd_rows_free(&rows);
     scene_free(&s);
   }
+}
+
+/* Tetrahedra, whose distances are equal but for rounding, which differs from rank to rank */
+static void rounding_does_not_change_the_order(void **state)
+{
+  (void) state;
+  enum { CLUMPS = 50, N = 4 * CLUMPS };
+  static const double CORNER[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+  uint64_t seed = 6;
+  scene s = scene_create(N);
+  for (int c = 0; c < CLUMPS; c++) {
+    const double at[3] = {uniform(&seed, 0, 20), uniform(&seed, 0, 20), uniform(&seed, 0, 20)};
+    for (int k = 0; k < 4; k++)
+      scene_set(&s, 4 * c + k, at[0] + CORNER[k][0] / sqrt(2), at[1] + CORNER[k][1] / sqrt(2), at[2] + CORNER[k][2] / sqrt(2), A, ETA);
+  }
+  const sd_spheres spheres = {s.x, s.a, s.w};
+  sd_rows first = {0};
+  assert_int_equal(sd_rows_find(&first, &spheres, N, 1.5, 0, 1), SD_OK);
+  for (int draw = 0; draw < 5; draw++) {
+    sd_rows rows = {0};
+    for (int d = 0; d < 3 * N; d++) s.x[d] += uniform(&seed, -1e-14, 1e-14);
+    assert_int_equal(sd_rows_find(&rows, &spheres, N, 1.5, 0, 1), SD_OK);
+    assert_memory_equal(rows.first, first.first, sizeof(long) * (N + 1));
+    for (int k = 0; k < N; k++) assert_int_equal(rows.row[rows.first[k]], first.row[first.first[k]]);
+    sd_rows_free(&rows);
+  }
+  sd_rows_free(&first);
+  scene_free(&s);
 }
 
 /* Everything seen, the factor is exact, but for its storage in single precision; a block of the whole scene as well. */
@@ -378,6 +406,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(spheres_come_farthest_first),
+      cmocka_unit_test(rounding_does_not_change_the_order),
       cmocka_unit_test(whole_inverse_converges_at_once),
       cmocka_unit_test(sparse_factor_is_symmetric_and_splits),
       cmocka_unit_test(blocks_are_symmetric),
