@@ -241,7 +241,8 @@ def solve(scene, words, steps, ranks=1):
 def rank_of(folder, words, steps, data, dt, rest, ghosts, boundary):
     """One rank of solve()."""
     part = run(Scene(data, float(dt), rest == "rest", float(ghosts), boundary), words, int(steps), lammps.finalize)
-    np.savez(pathlib.Path(folder) / os.environ["OMPI_COMM_WORLD_RANK"], **part)
+    me = next(os.environ[name] for name in ("OMPI_COMM_WORLD_RANK", "PMI_RANK") if name in os.environ)     # Open MPI, MPICH
+    np.savez(pathlib.Path(folder) / me, **part)
 
 
 class Report:
