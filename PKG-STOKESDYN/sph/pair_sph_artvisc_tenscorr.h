@@ -86,12 +86,12 @@ class PairSph : public LAMMPS_NS::Pair {
    * different density? */
   bool finds_surface() const { return shifts && !corrects; }
   bool has_fluids() const { return sd_sph_of_fluids(&model) != 0; }
-  /* Of particle i that is none of a wall: that of its equation of state at its density, and the viscosity that
-   * shear feels, with that of artVisc: rho alpha c h/(2 (D+2)). */
+  /* Of particle i that is none of a wall: that of its equation of state at its density, and the
+   * viscosity that shear feels, with that of artVisc: rho alpha c h/(2 (D+2)). */
   double speed_of_sound(int i) const;
   double all_viscosity(int i) const;
-  /* With shift or delta: the neighbours of each particle of this rank in the latest force, those nearer than 2 h
-   * and some more. */
+  /* With shift or delta: the neighbours of each particle of this rank in the latest force, those nearer
+   * than 2 h and some more. */
   sd_sph_both neighbours_of_each() { return near.both(atom->nlocal); }
   /* [3 n] the velocity that particles are moved with beside their own; nullptr: none. */
   const double *shift() const;

@@ -21,7 +21,8 @@ typedef struct {
    * rank: of the clump, 0 1 2 (sd_shape.h) */
   double turn[9];
   int rank;
-  /* [points.m] row of each point among those of the spheres of the body, which begin at first [spheres + 1] */
+  /* [points.m] row of each point among those of the spheres of the body, which begin at
+   * first [spheres + 1] */
   int *row, *first;
   sd_body_shape points;
   /* [SD_FACES_WIDTH][3 n] of the lone sphere, for sd_faces.h; NULL: of a clump */

@@ -8,8 +8,8 @@
 
 enum { SD_FILM_KINDS = 4, SD_FILM_SCALARS = 5 };
 
-/* Spheres that are all alike, of 12 points, 12 with the addition, 42, 42 with it: by kind, nodes of the ratio, of the gap, and
- * A_n A_t B11 B12 B22. Made by make_film_table. */
+/* Spheres that are all alike, of 12 points, 12 with the addition, 42, 42 with it: by kind, nodes of the
+ * ratio, of the gap, and A_n A_t B11 B12 B22. Made by make_film_table. */
 extern const double sd_film_table[SD_FILM_KINDS][SD_FILM_RATIOS][SD_FILM_GAPS][SD_FILM_SCALARS];
 
 /* Nodes in (0, 1) (sd_two_sphere_node) stand for

@@ -46,7 +46,8 @@ INLINE void image_smooth(int equal, int degree, const double *polynomial, vec t,
   c[3] = z * P[7] - turn;
   c[4] = z * P[7] + turn;
   if (!equal) {
-    const vec *of_D = P + 2 * SD_IMAGE_SYMMETRIC, both = all(2.0) * z * apart * D, four = all(4.0) * D * of_D[0];
+    const vec *of_D = P + 2 * SD_IMAGE_SYMMETRIC;
+    const vec both = all(2.0) * z * apart * D, four = all(4.0) * D * of_D[0];
     c[0] += both * of_D[0];
     c[2] += both * of_D[1];
     c[3] += g * four;
@@ -81,7 +82,8 @@ INLINE void near_images(int equal, int degree, const sd_image_part *p)
   const vec range2 = all(p->range2), twice = all(2.0 / p->range2), one = all(1.0);
   const vec sixth = all(1.0 / 6.0), ref = all(p->ref2 / 6.0), none = all(0.0);
   double mine[(2 * SD_IMAGE_SYMMETRIC + 2) * SD_RADIAL_TERMS];
-  if (equal && p->rows > 0) image_polynomials_of_all(p, (p->row[3] * p->row[3] - p->ref2) / 6.0, degree, mine);
+  if (equal && p->rows > 0)
+    image_polynomials_of_all(p, (p->row[3] * p->row[3] - p->ref2) / 6.0, degree, mine);
   for (int i = 0; i < p->targets; i++) {
     const double *own = p->row + 8 * (long) i;
     const vec x = all(own[0]), y = all(own[1]), g = all(own[2]), A = all(own[3] * own[3] / 6.0);
