@@ -7,21 +7,7 @@ folder = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(folder))
 import sph_runs as S  # noqa: E402
 from runs import np  # noqa: E402
-from scipy.optimize import curve_fit, fsolve  # noqa: E402
-from scipy.special import iv, ivp  # noqa: E402
-
-
-def mode(nu):
-    """Frequency and damping of n = 2, R = sigma = rho = 1: a potential r^2 and a stream function I2(q r), q^2 = s/nu, no shear stress at the
-    surface and the pressure of its curvature."""
-    def residual(s, n=2):
-        q = np.sqrt(s / nu + 0j)
-        slope = q * ivp(n, q) / iv(n, q)
-        B = -2 * n * (n - 1) / (q * q + 2 * n * n - 2 * slope)
-        return s * s + 2 * nu * n * s * ((n - 1) + B * (slope - 1)) + n * (n * n - 1) * (1 + B)
-
-    y = fsolve(lambda y: [residual(y[0] + 1j * y[1]).real, residual(y[0] + 1j * y[1]).imag], [-4 * nu, 6**0.5], xtol=1e-12)
-    return y[1], -y[0]
+from ringing import fitted, mode  # noqa: E402
 
 
 def angle_of(height, area):
@@ -39,10 +25,10 @@ def ring(n, mu, time, rest=6):
     out, run = S.lmp(folder, "drops", "ring%d_%g" % (n, mu), n=n, mu=mu, rest=rest, time=time)
     R = (run["v_count"][-1] / np.pi) ** 0.5 * 2 / n
     t, q = run["v_now"][1:], run["v_bend"][1:]
-    w, g = mode(mu / R**0.5)
-    fit = curve_fit(lambda t, a, g, w, b, d: np.exp(-g * t) * (a * np.sin(w * t) + b * np.cos(w * t)) + d, t, q, p0=[0.06, g, w, 0, 0])[0]
+    w, g = mode(mu, R)
+    fit = fitted(t, q, w, g)
     pressure = run["v_p"][0] * R    # of the first row of this run, before it has moved
-    table.append((n, mu, pressure, fit[2] / (w / R**1.5), fit[1] / (g / R**1.5)))
+    table.append((n, mu, pressure, fit[0] / w, fit[1] / g))
     c.near("%d across, Ohnesorge number %g: frequency of n = 2, over exact" % (n, mu), table[-1][3], 1.0, 0.02)
     c.near("%d across, Ohnesorge number %g: its damping, over exact" % (n, mu), table[-1][4], 1.0, 0.15 if S.QUICK else 0.10)
     c.near("%d across: pressure at rest, over sigma/R" % n, pressure, 1.0, 0.05)

@@ -89,6 +89,8 @@ EXCEPTIONS = [
     (("ewald",), lambda o: o.get("far") == "ewald" or o.get("space") == "wall" and not o["model"].startswith("multiblob"),
      "there already, or refused above a wall with one point per sphere that turns"),
     (("direct", "ewald"), lambda o: o.get("noise") == "yes", "each engine draws its own numbers"),
+    (("another pair style before",), lambda o: o.get("space") in ("floor", "slit", "flux"),
+     "the other one has rigid clumps, which need rotation, which one-point spheres have not there"),
     (("another pair style before",), lambda o: o["model of"] != "stokes", "SPH keeps rates in its fixes; the stream has no pair style"),
     (("pair style twice", "another pair style before"), lambda o: o.get("adapt") == "yes", "adapt goes on from the time step that it has chosen"),
     (CUTS, lambda o: o.get("adapt") == "yes" and o["flow"] == "time",

@@ -36,7 +36,7 @@ def moments(simulation, spheres, words, lines, move=""):
 
 
 def push(ids, direction):
-    return [f"group pushed id {' '.join(str(i) for i in ids)}", "fix push pushed addforce " + " ".join(repr(c / len(ids)) for c in np.eye(3)[direction])]
+    return [f"group pushed id {' '.join(str(i) for i in ids)}", "fix push pushed addforce " + " ".join(repr(float(c) / len(ids)) for c in np.eye(3)[direction])]
 
 
 def divergence(simulation, columns, d=1e-4):
@@ -55,7 +55,7 @@ def of_sphere(simulation, spheres, words, i, direction):
 def strain_velocity(simulation, x, E):
     """Velocities [n, 3] of free spheres in the flow E.x"""
     sim = simulation(Spheres(x), f"{FILMS} fluid_velocity v_u0 v_u1 v_u2", fix=False, dt=1e-3,
-                     before_pair="\n".join(f"variable u{p} atom " + "+".join(f"({E[p, q]!r})*{'xyz'[q]}" for q in range(3)) for p in range(3)))
+                     before_pair="\n".join(f"variable u{p} atom " + "+".join(f"({float(E[p, q])!r})*{'xyz'[q]}" for q in range(3)) for p in range(3)))
     return sim.commands("fix move all stokes_dynamics/overdamped").run(0).v
 
 
@@ -118,7 +118,7 @@ def test_a_clump_has_it_too_with_its_turns(simulation, tmp_path):
 
     def turn(axis):
         def column(d):
-            torque = " ".join(repr(0.25 * c) for c in np.eye(3)[axis])
+            torque = " ".join(repr(0.25 * float(c)) for c in np.eye(3)[axis])
             return moments(simulation, make(np.vstack([turned(x[:4], axis, d), x[4:]])), words, ["group clump id 1 2 3 4"], f"torque clump {torque}")
         return column
 
@@ -141,7 +141,7 @@ def pair_functions(simulation, gap, h, t):
     mobility = []
     for e in (h, t):
         sim = simulation(Spheres(x), FILMS, fix=False, dt=1e-3)
-        sim.commands([f"variable f{d} atom (3-2*id)*({e[d]!r})" for d in range(3)] +
+        sim.commands([f"variable f{d} atom (3-2*id)*({float(e[d])!r})" for d in range(3)] +
                      ["fix pull all addforce v_f0 v_f1 v_f2", "fix move all stokes_dynamics/overdamped"]).run(0)
         mobility.append(relative(sim.v) @ e * 3 * np.pi)
     return 1 - pull @ h / (r * 2 / 3), 1 - shear @ t / r, *mobility

@@ -161,7 +161,8 @@ def test_a_row_speaks_of_atoms_of_ours(simulation, tmp_path, case, ours):
     row, facts, lines, message = case
     verdicts = {verdict for r, where, verdict in rows() if (r, where) == (row, facts)}
     assert verdicts
-    steps = 0 if row == "FIX addtorque" else 2    # LAMMPS of today divides by the moment of inertia of one atom, 0
+    # LAMMPS of today divides by the moment of inertia of one atom, 0, and loses the atoms of a rigid body with langevin one time in six
+    steps = 0 if row == "FIX addtorque" or "langevin" in message and row == "FIX rigid*" else 2
     error, warnings = said(simulation, tmp_path, lines(ours), steps)
     if ours or case in ANYWHERE:
         assert message in error if error else message in warnings, (error, warnings)
