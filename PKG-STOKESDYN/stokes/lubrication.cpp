@@ -189,9 +189,7 @@ sd_status Lubrication::draw(const Scene &where, const sd_random_key &key, double
   const size_t n = where.size();
   Pairs pairs = {key, std::vector<double>(a.size() + 1), x.data(), Lattice::of(domain)};
   for (size_t k = 0; k < n; k++) pairs.tags[k] = ubuf(where.tag((int) k)).d;
-  if (near.n_all > near.n) {
-    halo.refresh(pairs.tags.data(), &pairs.tags[n], 1);
-  }
+  halo.refresh(pairs.tags.data(), &pairs.tags[n], 1);    // on all ranks: who has no copies may be copied
   return sd_lubrication_noise(&near, draw_pair, &pairs, F);
 }
 

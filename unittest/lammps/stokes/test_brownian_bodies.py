@@ -3,7 +3,7 @@ Covariance of one step against the mobility, Boltzmann's distribution, one run o
 import numpy as np
 import pytest
 
-from brownian import A, END, ETA, KT, SHORT, TIGHT, UNIT, check_covariance, check_pieces, check_ranks, end, in_a_plane, noise, script, steps_of
+from brownian import A, END, ETA, KT, SHORT, TIGHT, UNIT, check_covariance, check_pieces, check_ranks, check_same, end, in_a_plane, noise, script, steps_of
 from system import Spheres
 
 INF = f"cut_off_distance inf visc {ETA} relative_tolerance 1e-6"
@@ -207,6 +207,17 @@ def test_a_step_takes_one_solve_and_a_root(simulation):
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
 def test_ranks_and_newton_do_not_matter(tmp_path, way):
     check_ranks(tmp_path, way, *CLOSE)
+
+
+@pytest.mark.ranks(2)
+def test_a_rank_that_has_no_copies_may_be_copied(tmp_path):
+    """Two spheres of one rank stand between those of the other, in the box round them, and are copied there; these are far from both. A rank
+    that had no copies to refresh for the noise of films left the other waiting."""
+    x = A * np.array([(-1.2, 0, 0), (-3.5, 0.3, 0), (1.2, 0, 40.0), (1.2, 0, -40.0)])
+    lines = script(tmp_path, ("f f f", lambda: Spheres(x, A), f"{SHARP} multiblob 12 lubrication yes", TIGHT), END + ["run 20"])
+    one = end(tmp_path, lines)
+    before = next(k for k, line in enumerate(lines) if line.startswith("boundary"))
+    check_same(end(tmp_path, [*lines[:before], "processors 2 1 1", *lines[before:]], 2), one, *CLOSE)
 
 
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
