@@ -16,12 +16,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { RANKS_SPHERES = 300, RANKS_MOST = 4, RANKS_MESSAGE = 2000000, RANKS_SUM = 128 };
+enum { RANKS_SPHERES = 400, RANKS_WIDEST = 64, RANKS_MOST = 4, RANKS_MESSAGE = 2000000, RANKS_SUM = 128 };
 
 /* What all processes see: rows by the number of their sphere */
 typedef struct {
   pthread_barrier_t barrier;
-  double F[6 * RANKS_SPHERES], u[6 * RANKS_SPHERES], sum[RANKS_MOST][RANKS_SUM], message[RANKS_MOST][RANKS_MESSAGE];
+  double F[RANKS_WIDEST * RANKS_SPHERES], u[6 * RANKS_SPHERES], sum[RANKS_MOST][RANKS_SUM], message[RANKS_MOST][RANKS_MESSAGE];
   int count[RANKS_MOST][RANKS_MOST], failed;
 } shared;
 
@@ -45,6 +45,21 @@ static inline sd_status rank_refresh(void *ctx, const double *rows, double *ghos
   rank_meet(r);
   for (int i = r->n; i < r->n_all; i++)
     memcpy(ghosts + width * (i - r->n), r->all->F + width * r->number[i], sizeof(double) * (size_t) width);
+  rank_meet(r);
+  return SD_OK;
+}
+
+/* Back: rows += those of their ghosts on all ranks */
+static inline sd_status rank_reduce(void *ctx, const double *ghosts, double *rows, int width)
+{
+  const rank *r = ctx;
+  memset(r->all->message[r->me], 0, sizeof(double) * (size_t) (width * RANKS_SPHERES));
+  for (int i = r->n; i < r->n_all; i++)
+    for (int d = 0; d < width; d++) r->all->message[r->me][width * r->number[i] + d] += ghosts[width * (i - r->n) + d];
+  rank_meet(r);
+  for (int p = 0; p < r->ranks; p++)
+    for (int i = 0; i < r->n; i++)
+      for (int d = 0; d < width; d++) rows[width * i + d] += r->all->message[p][width * r->number[i] + d];
   rank_meet(r);
   return SD_OK;
 }
@@ -111,14 +126,20 @@ static inline sd_status rank_exchange(void *ctx, const double *send, const int *
 
 static inline sd_world rank_world(rank *r)
 {
-  return (sd_world){.ctx = r, .me = r->me, .ranks = r->ranks, .refresh = rank_refresh, .sum = rank_sum,
+  return (sd_world){.ctx = r, .me = r->me, .ranks = r->ranks, .refresh = rank_refresh, .reduce = rank_reduce, .sum = rank_sum,
                     .spread = rank_spread, .collect = rank_collect, .exchange = rank_exchange};
+}
+
+/* What all processes see and can write; zero, munmap in the end */
+static inline void *ranks_memory(size_t bytes)
+{
+  return mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
 }
 
 /* work(r, ctx) on each of the ranks, all of which must end well; munmap what comes back. */
 static inline shared *on_ranks(int ranks, void (*work)(rank *r, const void *ctx), const void *ctx)
 {
-  shared *all = mmap(NULL, sizeof(shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  shared *all = ranks_memory(sizeof(shared));
   pthread_barrierattr_t attribute;
   pthread_barrierattr_init(&attribute);
   pthread_barrierattr_setpshared(&attribute, PTHREAD_PROCESS_SHARED);

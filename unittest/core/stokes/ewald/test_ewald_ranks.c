@@ -3,7 +3,7 @@
 
 #include "periodic.h"
 
-enum { N = RANKS_SPHERES, MOST_RANKS = RANKS_MOST };
+enum { N = 300, MOST_RANKS = RANKS_MOST };
 
 /* FFTW's own, but on the rank that has no memory left */
 static int no_memory;

@@ -1,4 +1,4 @@
-/* What engines must answer, written down here anew: the tensor of two spheres, of two in a periodic box, of one above a wall. Blocks
+/* What engines must answer, written down here anew: the tensor of two spheres, of two in a periodic box, of two between walls. Blocks
  * [9] row-major, velocity from force. */
 #ifndef CLOSED_FORMS_H
 #define CLOSED_FORMS_H
@@ -6,6 +6,7 @@
 #include "check.h"
 
 #include "sd_constants.h"
+#include "sd_wall.h"
 
 #include <string.h>
 
@@ -90,6 +91,98 @@ static inline void periodic_tensor(const double r[3], double a, double b, double
         block_of(f, g, y, B);
         for (int e = 0; e < 9; e++) M[e] -= B[e];
       }
+}
+
+/* Two spheres, or (home = 0) one with its own images, above the wall z = 0 in a box of square section, all images along it: pairs and
+ * their images in the wall, to a smooth end at 40 cells. Beyond it is 12 h g xx/(8 pi eta R^5) on average (Blake 1971). */
+static inline void floor_tensor(const double xi[3], double a, const double xj[3], double b, double eta, double edge, int home,
+                                double M[9])
+{
+  const double far = 40.0 * edge, mean = 1.5 * xi[2] * xj[2] * tgamma(5.0 / 6.0) / (eta * far * edge * edge);
+  const sd_wall ground = {2, 1, 0.0};
+  memset(M, 0, 9 * sizeof(double));
+  M[0] = M[4] = mean;
+  for (int k = -70; k <= 70; k++)
+    for (int l = -70; l <= 70; l++) {
+      const double x[3] = {xj[0] + k * edge, xj[1] + l * edge, xj[2]}, r[3] = {xi[0] - x[0], xi[1] - x[1], xi[2] - x[2]};
+      const double part = exp(-pow((r[0] * r[0] + r[1] * r[1]) / (far * far), 3));
+      double bare[9] = {0.0}, image[9];
+      if (part < 1e-15) continue;
+      if (home || k != 0 || l != 0) pair_tensor(r, a, b, eta, bare);
+      else bare[0] = bare[4] = bare[8] = 1.0 / (6.0 * SD_PI * eta * a);
+      sd_wall_block(&ground, 3, xi, a, x, b, eta, image);
+      for (int e = 0; e < 9; e++) M[e] += part * (bare[e] + image[e]);
+    }
+}
+
+/* [4] row-major, times 4 eta k: flow of a wave exp(ikl) along it and, times i, across the walls, at a height d above forces of that
+ * wave in free fluid, averaged over a sphere there: s = k^2 a^2/3 */
+static inline void wave_of_forces(double k, double d, double s, double W[4])
+{
+  const double up = d < 0.0 ? -1.0 : 1.0, E = exp(-k * fabs(d)), K = k * fabs(d) - s;
+  W[0] = E * (1.0 - K);
+  W[1] = -up * E * K;
+  W[2] = up * E * K;
+  W[3] = E * (1.0 + K);
+}
+
+static inline void product2(const double A[4], const double B[4], double C[4])
+{
+  for (int e = 0; e < 4; e++) C[e] = A[2 * (e / 2)] * B[e % 2] + A[2 * (e / 2) + 1] * B[2 + e % 2];
+}
+
+/* The same of the forces that stop a flow on walls at 0 and H, less those that stop it on the one at 0, at the height z, where the
+ * flow is that of forces at h. With u on both walls and E their interaction q0 + E q1 = -u0, E' q0 + q1 = -u1. */
+static inline void wave_of_second_wall(double k, double H, double z, double s_z, double h, double s_h, double G[4])
+{
+  double u0[4], u1[4], E[4], back[4], square[4], q0[4], q1[4], t[4], w[4];
+  wave_of_forces(k, -h, s_h, u0);
+  wave_of_forces(k, H - h, s_h, u1);
+  wave_of_forces(k, -H, 0.0, E);
+  wave_of_forces(k, H, 0.0, back);
+  product2(back, E, square);
+  product2(back, u0, t);
+  const double p = 1.0 - square[0], q = -square[1], r = -square[2], v = 1.0 - square[3], over = 1.0 / (p * v - q * r);
+  const double inverse[4] = {over * v, -over * q, -over * r, over * p};
+  for (int e = 0; e < 4; e++) t[e] -= u1[e];
+  product2(inverse, t, q1);
+  product2(E, q1, q0); /* with another sign: what the second wall changes of the forces on the first */
+  wave_of_forces(k, z - H, s_z, w);
+  product2(w, q1, G);
+  wave_of_forces(k, z, s_z, w);
+  product2(w, q0, t);
+  for (int e = 0; e < 4; e++) G[e] -= t[e];
+}
+
+/* Two spheres, or one with its own images, between the walls z = 0 and z = H, with no mean pressure gradient along them: those above
+ * the first wall and, wave by wave, what the second one adds. No sphere cuts a wall; the waves are those of heights below 3/4 H. */
+static inline void slit_tensor(const double xi[3], double a, const double xj[3], double b, double eta, double edge, double H, int home,
+                               double M[9])
+{
+  enum { WAVES = 12 };
+  const double S = edge * edge, z = xi[2], h = xj[2];
+  floor_tensor(xi, a, xj, b, eta, edge, home, M);
+  for (int d = 0; d < 2; d++) M[4 * d] -= z * h / (eta * S * H);
+  for (int m = -WAVES; m <= WAVES; m++)
+    for (int n = -WAVES; n <= WAVES; n++) {
+      if (m == 0 && n == 0) continue;
+      const double k = 2.0 * SD_PI / edge * sqrt(m * m + n * n), unit = 1.0 / (4.0 * eta * k * S);
+      const double c = m / sqrt(m * m + n * n), s = n / sqrt(m * m + n * n);
+      const double at = 2.0 * SD_PI / edge * (m * (xi[0] - xj[0]) + n * (xi[1] - xj[1])), real = unit * cos(at), odd = unit * sin(at);
+      double G[4];
+      wave_of_second_wall(k, H, z, k * k * a * a / 3.0, h, k * k * b * b / 3.0, G);
+      const double T = 2.0 * (sinh(k * fmin(z, h)) * sinh(k * (H - fmax(z, h))) / sinh(k * H) * 2.0 - exp(-k * fabs(z - h)) +
+                              exp(-k * (z + h)));
+      M[0] += real * (c * c * G[0] + s * s * T);
+      M[4] += real * (s * s * G[0] + c * c * T);
+      M[1] += real * c * s * (G[0] - T);
+      M[3] += real * c * s * (G[0] - T);
+      M[2] -= odd * c * G[1];
+      M[5] -= odd * s * G[1];
+      M[6] += odd * c * G[2];
+      M[7] += odd * s * G[2];
+      M[8] += real * G[3];
+    }
 }
 
 #endif

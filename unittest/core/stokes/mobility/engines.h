@@ -6,6 +6,7 @@
 #include "on_ranks.h"
 
 #include "ewald/periodic.h"
+#include "slab/slab.h"
 
 #include "sd_neighbor.h"
 
@@ -36,6 +37,7 @@ typedef struct {
   sd_ewald_box box;
   sd_ewald first;
   sd_ewald_level second;
+  sd_slab slab;
 } how;
 
 typedef struct climber {
@@ -45,9 +47,11 @@ typedef struct climber {
   unsigned can;
   /* of a velocity over that of the pushed sphere alone */
   double tolerance;
-  /* periodic box: edge and tilts; 0: none. wall: z = -0.3, the fluid is above */
+  /* periodic box: edge and tilts; 0: none. wall: z = -0.3, the fluid is above; with a box this is periodic along it alone. height:
+   * of a second wall above that one; 0: none */
   double edge, tilt[3];
   int wall;
+  double height;
   /* cut-off, or range of a taper: no pair beyond it */
   double cut;
   sd_taper taper;
@@ -153,6 +157,19 @@ static void choose_two_levels(how *h, const cast *s)
   h->reach = h->first.reach;
 }
 
+/* Ghosts are images along the walls only: the box across them is far larger than any reach. */
+static void choose_slab(how *h, const cast *s)
+{
+  const sd_wall wall = wall_of(h->row);
+  const sd_slab_walls walls = h->row->height > 0.0 ? sd_slab_slit(2, wall_at, wall_at + h->row->height, 0) : sd_slab_floor(&wall);
+  h->engine = &sd_mobility_slab;
+  h->box = box_of(h->row, s);
+  assert_int_equal(slab_choose(&walls, &h->box, s->x, s->a, s->n, tolerance_of(h->row), &h->slab), SD_OK);
+  h->first = h->slab.ewald;
+  h->first.box.edge[2] = 1e6;
+  h->reach = h->first.reach;
+}
+
 /* --- placed --- */
 
 typedef struct {
@@ -192,7 +209,7 @@ static inline void place_on(placed *p, const climber *row, const cast *s, rank *
     }
     if (pass == 0) r->n = r->n_all;
   }
-  sd_mobility_scene scene = {.how = {p->h.law, s->width, &p->h.first, &p->h.second}, .n = r->n, .n_all = r->n_all,
+  sd_mobility_scene scene = {.how = {p->h.law, s->width, &p->h.first, &p->h.second, &p->h.slab}, .n = r->n, .n_all = r->n_all,
                              .spheres = {p->x, p->a, p->w}, .world = rank_world(r)};
   if (p->h.engine->view == SD_VIEW_ALL) {
     scene.n_all = s->n;
@@ -257,12 +274,19 @@ static const climber climbers[] = {
      .edge = 60, .ratio = 20},
     {.name = "two levels, open", .choose = choose_two_levels, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR, .tolerance = 3e-3,
      .ratio = 20},
+    {.name = "slab, floor", .choose = choose_slab, .can = OVERLAPS | POSITIVE | RANKS | FAR, .tolerance = 1e-5, .edge = 13, .wall = 1,
+     .ratio = 1},
+    {.name = "slab, slit", .choose = choose_slab, .can = OVERLAPS | POSITIVE | RANKS | FAR, .tolerance = 1e-5, .edge = 13, .wall = 1,
+     .height = 16, .ratio = 1},
     {.name = "shells, all pairs", .choose = choose_all_pairs, .can = TORQUES | POSITIVE | FAR, .tolerance = 2e-3, .ratio = 1, .shell = 12},
     {.name = "shells, wall", .choose = choose_all_pairs, .can = TORQUES | POSITIVE | FAR, .tolerance = 2e-3, .wall = 1, .ratio = 1,
      .shell = 12},
     {.name = "shells, Ewald, cube", .choose = choose_one_level, .can = TORQUES | POSITIVE | FAR, .tolerance = 2e-3, .edge = 13, .ratio = 1,
      .shell = 12},
     {.name = "shells, Ewald, wall", .choose = choose_one_level, .can = TORQUES | POSITIVE | FAR, .tolerance = 2e-3, .wall = 1, .ratio = 1,
+     .shell = 12},
+    /* near a floor a shell differs from a sphere of one point by its model, and so do all its images */
+    {.name = "shells, floor", .choose = choose_slab, .can = POSITIVE | FAR, .tolerance = 1e-2, .edge = 13, .wall = 1, .ratio = 1,
      .shell = 12},
 };
 enum { CLIMBERS = sizeof(climbers) / sizeof(climbers[0]) };

@@ -89,6 +89,12 @@ static int many_of(const climber *row)
   return row->shell ? 3 : 6;
 }
 
+/* Periodic along the walls alone */
+static int in_slab(const climber *row)
+{
+  return row->edge > 0.0 && row->wall;
+}
+
 static double side_of(const climber *row)
 {
   return row->edge > 0.0 ? 0.9 * row->edge : row->ratio > 1.0 ? 50.0 : 7.0;
@@ -200,16 +206,29 @@ static double least_eigenvalue(const double *S, int n)
   return lo;
 }
 
-/* What a pair should be in the boundary of the row, velocity of i from the force on j */
+/* Along a floor or a slit, with images */
+static void expected_in_slab(const climber *row, const cast *s, int i, int j, double M[9])
+{
+  const double eta = eta_of(s, i, j), *p = s->x + 3 * i, *q = s->x + 3 * j;
+  const double above[2][3] = {{p[0], p[1], p[2] - wall_at}, {q[0], q[1], q[2] - wall_at}};
+  if (row->height > 0.0) slit_tensor(above[0], s->a[i], above[1], s->a[j], eta, row->edge, row->height, i != j, M);
+  else floor_tensor(above[0], s->a[i], above[1], s->a[j], eta, row->edge, i != j, M);
+}
+
+/* What a pair should be in the boundary of the row, velocity of i from the force on j; i = j: of one with its own images, in a box */
 static void expected(const climber *row, const cast *s, int i, int j, double M[9])
 {
   double r[3], edge[3][3], B[9];
   for (int d = 0; d < 3; d++) r[d] = s->x[3 * i + d] - s->x[3 * j + d];
   const double R = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), eta = eta_of(s, i, j);
+  if (in_slab(row)) {
+    expected_in_slab(row, s, i, j, M);
+    return;
+  }
   if (row->edge > 0.0) {
     const sd_ewald_box box = box_of(row, s);
     periodic_edges(&box, edge);
-    periodic_tensor(r, s->a[i], s->a[j], eta, edge, 0, M);
+    periodic_tensor(r, s->a[i], s->a[j], eta, edge, i == j, M);
     return;
   }
   pair_tensor(r, s->a[i], s->a[j], eta, M);
@@ -257,22 +276,21 @@ static double alone_at(const climber *row, const cast *s, int i, int number)
   return number == 2 ? 1.0 - (9.0 * h - 4.0 * pow(h, 3) + pow(h, 5)) / 8.0 : 1.0 - (9.0 * h - 2.0 * pow(h, 3) + pow(h, 5)) / 16.0;
 }
 
-/* In an oblique box the lattice decides, by the closed form of closed_forms.h. Others are there, but are not pushed. */
+/* In an oblique box and between walls the lattice decides, by closed_forms.h. Others are there, but are not pushed. */
 static verdict t000_lone_sphere(const climber *row)
 {
   cast s = {.width = widest(row)};
   add(&s, 3.0, 4.0, row->wall ? wall_at + 5.0 * 0.8 : 2.0, 0.8);
   if (row->ratio > 1.0) add(&s, 30.0, 25.0, 20.0, 0.8 * row->ratio);
-  double *S = matrix(row, &s), worst = 0.0, edge[3][3], M[9], r[3] = {0.0};
-  const sd_ewald_box box = box_of(row, &s);
-  periodic_edges(&box, edge);
+  const int by_lattice = row->tilt[0] != 0.0 || in_slab(row);
+  double *S = matrix(row, &s), worst = 0.0, M[9];
   for (int i = 0; i < s.n; i++) {
-    periodic_tensor(r, s.a[i], s.a[i], eta_of(&s, i, i), edge, 1, M);
+    if (by_lattice) expected(row, &s, i, i, M);
     for (int p = 0; p < s.width; p++)
       for (int q = 0; q < s.width; q++) {
         double wanted = p == q ? alone_at(row, &s, i, p) : 0.0;
-        if (row->tilt[0] != 0.0 && p < 3 && q < 3) wanted = M[3 * p + q] * drag_of(&s, s.width * i);
-        if (row->tilt[0] != 0.0 && p >= 3 && q >= 3) continue;
+        if (by_lattice && p < 3 && q < 3) wanted = M[3 * p + q] * drag_of(&s, s.width * i);
+        if (by_lattice && p >= 3 && q >= 3) continue;
         if (row->wall && (p < 3) != (q < 3)) continue; /* a wall couples them */
         worst = fmax(worst, fabs(S[(s.width * i + p) * numbers_of(&s) + s.width * i + q] - wanted));
       }
@@ -332,8 +350,8 @@ static verdict far_above_a_wall(const climber *row)
 static verdict t030_far_pair(const climber *row)
 {
   if (!(row->can & FAR)) return beyond_the_cut(row);
-  if (row->wall) return far_above_a_wall(row);
-  if (row->ratio > 1.0) { /* beyond the ranges of both levels, and in a box as far as can be */
+  if (row->wall && row->edge == 0.0) return far_above_a_wall(row);
+  if (row->ratio > 1.0 || in_slab(row)) { /* beyond the ranges of both levels, and in a box as far as can be */
     const cast s = pair_of(row, 0.8, large_of(row), row->edge > 0.0 ? 0.6 * row->edge : 70.0);
     return within(error_of_pairs(row, &s), row->tolerance);
   }
@@ -395,9 +413,9 @@ static verdict t050_positivity(const climber *row)
 static int turn_for(const climber *row, double T[9])
 {
   const double c = cos(0.7), d = sin(0.7), about_z[9] = {c, -d, 0, d, c, 0, 0, 0, 1}, cycle[9] = {0, 0, 1, 1, 0, 0, 0, 1, 0};
-  const double about_x[9] = {1, 0, 0, 0, 0.8, -0.6, 0, 0.6, 0.8};
+  const double about_x[9] = {1, 0, 0, 0, 0.8, -0.6, 0, 0.6, 0.8}, quarter[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1};
   if (row->tilt[0] != 0.0 || row->shell) return 0;
-  if (row->edge > 0.0) memcpy(T, cycle, sizeof(cycle));
+  if (row->edge > 0.0) memcpy(T, row->wall ? quarter : cycle, 9 * sizeof(double));
   else if (row->wall) memcpy(T, about_z, sizeof(about_z));
   else sd_product3(about_z, about_x, T);
   return 1;
@@ -605,7 +623,7 @@ static verdict t120_torn_box(const climber *row)
   periodic_edges(&box, edge);
   torn = s;
   for (int i = 0; i < s.n; i++)
-    for (int d = 0; d < 3; d++) torn.x[3 * i + d] += (i % 3 - 1) * edge[i % 2][d] + (i % 4 - 2) * edge[2][d];
+    for (int d = 0; d < 3; d++) torn.x[3 * i + d] += (i % 3 - 1) * edge[i % 2][d] + (i % 4 - 2) * edge[row->wall ? 1 : 2][d];
   double *S = matrix(row, &s), *B = matrix(row, &torn);
   for (int k = 0; k < numbers_of(&s) * numbers_of(&s); k++) worst = fmax(worst, fabs(S[k] - B[k]));
   free(S), free(B);
