@@ -12,19 +12,16 @@ import tempfile
 import threading
 import time
 
+import other_python
+
 TOP = pathlib.Path(__file__).resolve().parents[1]
 
 # matplotlib keeps its font list here, since a bare environment has no home; once written it is used again.
 os.environ.setdefault("MPLCONFIGDIR", str(TOP / "build" / "examples" / "matplotlib"))
 
-DEBIAN = "/usr/bin/python3"
-try:
-    import matplotlib
-    import numpy as np      # noqa: F401
-except ImportError:         # Debian's python has them, another one on the PATH need not
-    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
-        raise
-    os.execv(DEBIAN, [DEBIAN] + sys.argv)
+other_python.unless("numpy", "matplotlib")
+import matplotlib        # noqa: E402
+import numpy as np       # noqa: E402,F401
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt    # noqa: E402,F401
 

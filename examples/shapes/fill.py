@@ -17,20 +17,11 @@ that cover most of what is not covered yet are taken first. Then all radii grow 
 ellipsoids the exact values stand beside them (Oberbeck 1876, Jeffery 1922).
 """
 import argparse
-import os
 import pathlib
 import sys
 
-DEBIAN = "/usr/bin/python3"
-try:
-    import numpy as np
-except ImportError:         # Debian's python has it, another one on the PATH need not
-    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
-        raise
-    os.execv(DEBIAN, [DEBIAN] + sys.argv)
-
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from surfaces import Error, SHAPES, cube, inertia, surface, volume_and_centre    # noqa: E402,F401
+from surfaces import np, Error, SHAPES, cube, inertia, surface, volume_and_centre    # noqa: E402,F401
 
 # --- the fill ---------------------------------------------------------------------------------------------------------------
 

@@ -28,20 +28,11 @@ Types: 1 water, 2 walls, 3 and up bodies. A particle belongs to a body when its 
 is not closed, or when parts meet. It needs Python and numpy, and matplotlib for the picture.
 """
 import argparse
-import os
 import pathlib
 import sys
 
-DEBIAN = "/usr/bin/python3"
-try:
-    import numpy as np
-except ImportError:         # Debian's python has it, another one on the PATH need not
-    if sys.executable == DEBIAN or not os.path.exists(DEBIAN):
-        raise
-    os.execv(DEBIAN, [DEBIAN] + sys.argv)
-
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from surfaces import Error, SHAPES, closed, inertia, inside, read, section, surface, volume_and_centre    # noqa: E402
+from surfaces import np, Error, SHAPES, closed, inertia, inside, read, section, surface, volume_and_centre    # noqa: E402
 
 WATER, WALL, BODY = 1, 2, 3
 UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0, "inch": 0.0254, "foot": 0.3048}
