@@ -8,7 +8,7 @@
 #include "sd_ewald_image_pairs.h"
 #include "sd_ewald_pairs.h"
 #include "sd_ewald_waves.h"
-#include "sd_room.h"
+#include "sd_rank_spheres.h"
 
 typedef struct {
   /* what the tables are made for */
@@ -19,17 +19,7 @@ typedef struct {
   sd_ewald_pairs pairs;
   sd_ewald_image_pairs image_pairs;
   double tail[3];
-  /* [own] this rank's spheres with radius in order of the near part's targets */
-  int *sphere, own;
-  size_t sphere_room;
-  /* [3 n_all] wall: centres at heights of at least the radii */
-  double *stand;
-  size_t stand_room;
-  /* this rank's spheres, with ghosts */
-  int n, n_all;
-  double *ghosts;
-  size_t ghost_room;
-  sd_spheres spheres;
+  sd_rank_spheres here;
 } ewald;
 
 /* --- tables of a splitting --- */
@@ -62,29 +52,16 @@ static int changed(const ewald *e, const sd_mobility_scene *s)
 
 /* --- where the spheres stand --- */
 
-static int me_make_room(ewald *e, int n, size_t ghost_numbers)
-{
-  return sd_reserve(&e->sphere, sizeof(int), (size_t) n, &e->sphere_room) &&
-      sd_reserve(&e->ghosts, sizeof(double), ghost_numbers, &e->ghost_room);
-}
-
 /* Above a wall the whole matrix is made with heights of at least the radii (sd_wall.h). */
-static int keep_off_wall(ewald *e, const sd_mobility_scene *s)
+static sd_status take_spheres(ewald *e, const sd_mobility_scene *s)
 {
   const sd_wall *wall = &e->ewald.images.wall;
-  e->spheres = s->spheres;
-  if (!wall->sign) return 1;
-  if (!sd_reserve(&e->stand, 3 * sizeof(double), (size_t) s->n_all, &e->stand_room)) return 0;
+  const sd_status status =
+      sd_rank_spheres_take(&e->here, &s->spheres, e->width, s->n, s->n_all, wall->sign);
+  if (status != SD_OK || !wall->sign) return status;
   for (long i = 0; i < s->n_all; i++)
-    sd_wall_keep_off(wall, s->spheres.x + 3 * i, s->spheres.a[i], e->stand + 3 * i);
-  e->spheres.x = e->stand;
-  return 1;
-}
-
-static void list_spheres(ewald *e)
-{
-  e->own = e->pairs.n;
-  for (int i = 0; i < e->pairs.n; i++) e->sphere[i] = e->pairs.sphere[e->pairs.target[i]];
+    sd_wall_keep_off(wall, s->spheres.x + 3 * i, s->spheres.a[i], e->here.stand + 3 * i);
+  return SD_OK;
 }
 
 static int all_finite(const sd_mobility_scene *s)
@@ -98,8 +75,8 @@ static int all_finite(const sd_mobility_scene *s)
 static sd_status me_place(void *state, const sd_mobility_scene *s)
 {
   ewald *e = state;
-  e->n = s->n;
-  e->n_all = s->n_all;
+  sd_rank_spheres *here = &e->here;
+  here->n = s->n;
   sd_status status = SD_OK;
   if (changed(e, s)) status = me_make_tables(e, s);
   e->world = s->world;
@@ -109,15 +86,14 @@ static sd_status me_place(void *state, const sd_mobility_scene *s)
   if (!(e->ewald.count > 0.0)) return status;
   int brick[6] = {0};
   if (status == SD_OK && !all_finite(s)) status = SD_ENOTFINITE;
-  if (status == SD_OK && !keep_off_wall(e, s)) status = SD_ENOMEMORY;
-  if (status == SD_OK) status = sd_ewald_pairs_place(&e->pairs, &e->spheres, s->n, s->n_all);
+  if (status == SD_OK) status = take_spheres(e, s);
+  if (status == SD_OK) status = sd_ewald_pairs_place(&e->pairs, &here->spheres, s->n, s->n_all);
   if (status == SD_OK && e->ewald.images.wall.sign)
-    status = sd_ewald_image_pairs_place(&e->image_pairs, &e->ewald.images.wall, &e->spheres, s->n, s->n_all);
-  if (status == SD_OK && !me_make_room(e, s->n, (size_t) e->width * (size_t) (s->n_all - s->n)))
-    status = SD_ENOMEMORY;
-  if (status == SD_OK) list_spheres(e);
+    status = sd_ewald_image_pairs_place(&e->image_pairs, &e->ewald.images.wall, &here->spheres, s->n,
+                                        s->n_all);
+  if (status == SD_OK) sd_rank_spheres_list(here, &e->pairs);
   if (status == SD_OK)
-    status = sd_ewald_waves_find(&e->waves, &e->spheres, e->sphere, e->own, brick);
+    status = sd_ewald_waves_find(&e->waves, &here->spheres, here->sphere, here->own, brick);
   return sd_ewald_waves_meet(&e->waves, brick, status, &e->world);
 }
 
@@ -126,11 +102,12 @@ static sd_status me_place(void *state, const sd_mobility_scene *s)
 /* Sums [9] over all spheres of w F, b w F and w T: what is far is felt as a mean. */
 static sd_status sums_of(const ewald *e, const double *F, double *sums)
 {
+  const sd_rank_spheres *here = &e->here;
   const long m = e->width;
   memset(sums, 0, 9 * sizeof(double));
-  for (int i = 0; i < e->own; i++) {
-    const long j = e->sphere[i];
-    const double w = e->spheres.w[j], b = sd_ewald_b(&e->ewald, e->spheres.a[j]);
+  for (int i = 0; i < here->own; i++) {
+    const long j = here->sphere[i];
+    const double w = here->spheres.w[j], b = sd_ewald_b(&e->ewald, here->spheres.a[j]);
     for (int d = 0; d < 3; d++) {
       sums[d] += w * F[m * j + d];
       sums[3 + d] += w * b * F[m * j + d];
@@ -140,24 +117,15 @@ static sd_status sums_of(const ewald *e, const double *F, double *sums)
   return sd_world_sum(&e->world, sums, 9);
 }
 
-/* u += w rows */
-static void add_waves(const ewald *e, const double *rows, double *u)
-{
-  const long m = e->width;
-  for (int i = 0; i < e->own; i++) {
-    const long j = e->sphere[i];
-    for (int d = 0; d < m; d++) u[m * j + d] += e->spheres.w[j] * rows[m * i + d];
-  }
-}
-
 /* u += w (mean of what is beyond the range) */
 static void add_means(const ewald *e, const double *S, double *u)
 {
+  const sd_rank_spheres *here = &e->here;
   const long m = e->width;
   const double over_V = 1.0 / sd_ewald_volume(&e->ewald.box), *C = e->tail;
-  for (int i = 0; i < e->own; i++) {
-    const long j = e->sphere[i];
-    const double w = e->spheres.w[j], b = sd_ewald_b(&e->ewald, e->spheres.a[j]);
+  for (int i = 0; i < here->own; i++) {
+    const long j = here->sphere[i];
+    const double w = here->spheres.w[j], b = sd_ewald_b(&e->ewald, here->spheres.a[j]);
     for (int d = 0; d < 3; d++)
       u[m * j + d] += w * over_V * ((C[0] - b * C[1]) * S[d] - (C[1] - b * C[2]) * S[3 + d]);
     for (int d = 3; d < m; d++) u[m * j + d] += w * 0.25 * C[1] * over_V * S[3 + d];
@@ -167,13 +135,13 @@ static void add_means(const ewald *e, const double *S, double *u)
 /* u = what is near; and the sums for what is far, of a periodic box. There are spheres. */
 static sd_status me_near_part(ewald *e, const double *F, double *u, double *sums)
 {
+  sd_rank_spheres *here = &e->here;
   sd_status status = e->ewald.box.periodic ? sums_of(e, F, sums) : SD_OK;
-  if (status == SD_OK && e->world.refresh)
-    status = e->world.refresh(e->world.ctx, F, e->ghosts, e->width);
+  if (status == SD_OK) status = sd_rank_spheres_refresh(here, &e->world, F);
   if (status != SD_OK) return status;
-  sd_ewald_pairs_apply(&e->pairs, e->n, F, e->ghosts, u);
+  sd_ewald_pairs_apply(&e->pairs, here->n, F, here->ghosts, u);
   if (e->ewald.images.wall.sign)
-    sd_ewald_image_pairs_apply(&e->image_pairs, e->n, F, e->ghosts, u);
+    sd_ewald_image_pairs_apply(&e->image_pairs, here->n, F, here->ghosts, u);
   return SD_OK;
 }
 
@@ -185,7 +153,7 @@ static double *rows_of_waves(const ewald *e)
 
 static void clear(const ewald *e, double *u)
 {
-  memset(u, 0, sizeof(double) * (size_t) e->width * (size_t) e->n);
+  memset(u, 0, sizeof(double) * (size_t) e->width * (size_t) e->here.n);
 }
 
 static sd_status me_apply(void *state, const double *F, double *u)
@@ -197,8 +165,8 @@ static sd_status me_apply(void *state, const double *F, double *u)
     return SD_OK;
   }
   sd_status status = me_near_part(e, F, u, sums);
-  if (status == SD_OK) status = sd_ewald_waves_apply(&e->waves, &e->spheres, F, rows);
-  if (status == SD_OK) add_waves(e, rows, u);
+  if (status == SD_OK) status = sd_ewald_waves_apply(&e->waves, &e->here.spheres, F, rows);
+  if (status == SD_OK) sd_rank_spheres_add(&e->here, rows, u);
   if (status == SD_OK && e->ewald.box.periodic) add_means(e, sums, u);
   return status;
 }
@@ -227,7 +195,7 @@ static sd_status draw(void *state, const sd_random_key *key, double *u)
   clear(e, u);
   double *rows = rows_of_waves(e);
   const sd_status status = sd_ewald_waves_draw(&e->waves, key, rows);
-  if (status == SD_OK) add_waves(e, rows, u);
+  if (status == SD_OK) sd_rank_spheres_add(&e->here, rows, u);
   return status;
 }
 
@@ -237,9 +205,7 @@ static void me_release(void *state)
   sd_ewald_pairs_free(&e->pairs);
   sd_ewald_image_pairs_free(&e->image_pairs);
   sd_ewald_waves_free(&e->waves);
-  free(e->sphere);
-  free(e->stand);
-  free(e->ghosts);
+  sd_rank_spheres_free(&e->here);
 }
 
 const sd_mobility_engine sd_mobility_ewald = {

@@ -10,6 +10,7 @@
 #include "sd_ewald_image_pairs.h"
 #include "sd_ewald_pairs.h"
 #include "sd_ewald_waves.h"
+#include "sd_rank_spheres.h"
 #include "sd_room.h"
 
 typedef struct {
@@ -21,18 +22,10 @@ typedef struct {
   sd_ewald_image_pairs images[2];
   sd_ewald_waves waves;
   sd_columns columns;
-  /* this rank's spheres with radius, in order of the near part's targets, and their heights */
-  int *sphere, own;
+  sd_rank_spheres here;
+  /* [here.own] heights of this rank's spheres with radius */
   double *height;
-  size_t sphere_room, height_room;
-  /* [3 n_all] centres, off the walls */
-  double *stand;
-  size_t stand_room;
-  /* this rank's spheres, with ghosts */
-  int n, n_all;
-  double *ghosts;
-  size_t ghost_room;
-  sd_spheres spheres;
+  size_t height_room;
 } slab;
 
 /* --- tables of a splitting --- */
@@ -64,30 +57,19 @@ static sd_status make_tables(slab *s, const sd_mobility_scene *scene)
 
 /* --- where the spheres stand --- */
 
-static int make_room(slab *s)
-{
-  const size_t n = (size_t) s->n, all = (size_t) s->n_all;
-  return sd_reserve(&s->sphere, sizeof(int), n, &s->sphere_room) &&
-      sd_reserve(&s->height, sizeof(double), n, &s->height_room) &&
-      sd_reserve(&s->stand, 3 * sizeof(double), all, &s->stand_room) &&
-      sd_reserve(&s->ghosts, 3 * sizeof(double), all - n, &s->ghost_room);
-}
-
 /* Off the walls, and within the heights that the tables have; 0: not all of them */
 static int stand_spheres(slab *s, const sd_spheres *spheres)
 {
   const double spare = 1e-9 * (s->slab.hi - s->slab.lo + s->slab.spacing);
   int sound = 1;
-  for (long i = 0; i < s->n_all; i++) {
-    double *x = s->stand + 3 * i;
+  for (long i = 0; i < s->here.n_all; i++) {
+    double *x = s->here.stand + 3 * i;
     sd_slab_keep_off(&s->slab.walls, spheres->x + 3 * i, spheres->a[i], x);
     const double height = sd_slab_height(&s->slab.walls, x);
     if (!(spheres->a[i] > 0.0)) continue;
     for (int d = 0; d < 3; d++) sound = sound && fabs(x[d]) < INFINITY;
     sound = sound && height >= s->slab.lo - spare && height <= s->slab.hi + spare;
   }
-  s->spheres = *spheres;
-  s->spheres.x = s->stand;
   return sound;
 }
 
@@ -95,38 +77,38 @@ static sd_status place_images(slab *s)
 {
   sd_status status = SD_OK;
   for (int w = 0; w < sd_slab_many_walls(&s->slab.walls) && status == SD_OK; w++)
-    status = sd_ewald_image_pairs_place(s->images + w, s->slab.walls.wall + w, &s->spheres, s->n,
-                                        s->n_all);
+    status = sd_ewald_image_pairs_place(s->images + w, s->slab.walls.wall + w, &s->here.spheres,
+                                        s->here.n, s->here.n_all);
   return status;
 }
 
 static void list_spheres(slab *s)
 {
-  s->own = s->pairs.n;
-  for (int i = 0; i < s->own; i++) {
-    s->sphere[i] = s->pairs.sphere[s->pairs.target[i]];
-    s->height[i] = sd_slab_height(&s->slab.walls, s->spheres.x + 3L * s->sphere[i]);
-  }
+  sd_rank_spheres_list(&s->here, &s->pairs);
+  for (int i = 0; i < s->here.own; i++)
+    s->height[i] = sd_slab_height(&s->slab.walls, s->here.spheres.x + 3L * s->here.sphere[i]);
 }
 
 static sd_status place(void *state, const sd_mobility_scene *scene)
 {
   slab *s = state;
+  sd_rank_spheres *here = &s->here;
+  const int n = here->n = scene->n;
   sd_status status = SD_OK;
-  s->n = scene->n;
-  s->n_all = scene->n_all;
   if (!s->ready || !sd_slab_same_tables(&s->slab, scene->how.slab)) status = make_tables(s, scene);
   s->world = scene->world;
   s->waves.grid.world = scene->world;
   if (!(s->slab.ewald.count > 0.0)) return status;
   int brick[6] = {0};
-  if (status == SD_OK && !make_room(s)) status = SD_ENOMEMORY;
+  if (status == SD_OK) status = sd_rank_spheres_take(here, &scene->spheres, 3, n, scene->n_all, 1);
+  if (status == SD_OK && !sd_reserve(&s->height, sizeof(double), (size_t) n, &s->height_room))
+    status = SD_ENOMEMORY;
   if (status == SD_OK && !stand_spheres(s, &scene->spheres)) status = SD_ENOTFINITE;
-  if (status == SD_OK) status = sd_ewald_pairs_place(&s->pairs, &s->spheres, s->n, s->n_all);
+  if (status == SD_OK) status = sd_ewald_pairs_place(&s->pairs, &here->spheres, n, here->n_all);
   if (status == SD_OK) status = place_images(s);
   if (status == SD_OK) list_spheres(s);
   if (status == SD_OK)
-    status = sd_ewald_waves_find(&s->waves, &s->spheres, s->sphere, s->own, brick);
+    status = sd_ewald_waves_find(&s->waves, &here->spheres, here->sphere, here->own, brick);
   return sd_ewald_waves_meet(&s->waves, brick, status, &s->world);
 }
 
@@ -135,13 +117,14 @@ static sd_status place(void *state, const sd_mobility_scene *scene)
 /* Sums over all spheres of F, z F and (z^2 + 2 A) F along the slab, A = a^2/6: [2][3] */
 static sd_status sums_of(const slab *s, const double *F, double *sums)
 {
+  const sd_rank_spheres *here = &s->here;
   const int axis = s->slab.walls.wall->axis;
   memset(sums, 0, 6 * sizeof(double));
-  for (int i = 0; i < s->own; i++) {
-    const long j = s->sphere[i];
-    const double z = s->height[i], a = s->spheres.a[j];
+  for (int i = 0; i < here->own; i++) {
+    const long j = here->sphere[i];
+    const double z = s->height[i], a = here->spheres.a[j];
     for (int d = 0; d < 2; d++) {
-      const double f = s->spheres.w[j] * F[3 * j + (axis + 1 + d) % 3];
+      const double f = here->spheres.w[j] * F[3 * j + (axis + 1 + d) % 3];
       sums[3 * d] += f;
       sums[3 * d + 1] += z * f;
       sums[3 * d + 2] += (z * z + a * a / 3.0) * f;
@@ -154,50 +137,44 @@ static sd_status sums_of(const slab *s, const double *F, double *sums)
  * -|d|/2 + Lz/12 + d^2/(2 Lz), and the walls' (sd_slab.h) put in; |d| stays. */
 static void add_means(const slab *s, const double *sums, double *u)
 {
+  const sd_rank_spheres *here = &s->here;
   const sd_slab_walls *walls = &s->slab.walls;
   const sd_ewald *e = &s->slab.ewald;
   const int axis = walls->wall->axis;
   const double Lz = s->slab.spacing * e->grid[axis], H = walls->height;
   const double over = 1.0 / (e->box.edge[(axis + 1) % 3] * e->box.edge[(axis + 2) % 3]);
-  for (int i = 0; i < s->own; i++) {
-    const long j = s->sphere[i];
-    const double z = s->height[i], square = z * z + s->spheres.a[j] * s->spheres.a[j] / 3.0;
+  for (int i = 0; i < here->own; i++) {
+    const long j = here->sphere[i];
+    const double a = here->spheres.a[j], z = s->height[i], square = z * z + a * a / 3.0;
     for (int d = 0; d < 2; d++) {
       const double *S = sums + 3 * d;
       double v = -Lz / 12.0 * S[0] - (square * S[0] - 2.0 * z * S[1] + S[2]) / (2.0 * Lz);
       if (walls->kind != SD_SLAB_LAYER) v += 0.5 * (z * S[0] + S[1]);
       if (walls->kind == SD_SLAB_SLIT) v -= z * S[1] / H;
       if (walls->no_flux) v -= 3.0 / (H * H * H) * (z * H - square) * (H * S[1] - S[2]);
-      u[3 * j + (axis + 1 + d) % 3] += s->spheres.w[j] * over * v;
+      u[3 * j + (axis + 1 + d) % 3] += here->spheres.w[j] * over * v;
     }
-  }
-}
-
-static void add_waves(const slab *s, const double *rows, double *u)
-{
-  for (int i = 0; i < s->own; i++) {
-    const long j = s->sphere[i];
-    for (int d = 0; d < 3; d++) u[3 * j + d] += s->spheres.w[j] * rows[3 * i + d];
   }
 }
 
 static sd_status apply(void *state, const double *F, double *u)
 {
   slab *s = state;
+  sd_rank_spheres *here = &s->here;
   double sums[6], *rows = s->pairs.u; /* free after the near part, and longer than our rows */
   if (!(s->slab.ewald.count > 0.0)) {
-    memset(u, 0, 3 * sizeof(double) * (size_t) s->n);
+    memset(u, 0, 3 * sizeof(double) * (size_t) s->here.n);
     return SD_OK;
   }
   sd_status status = sums_of(s, F, sums);
-  if (status == SD_OK && s->world.refresh) status = s->world.refresh(s->world.ctx, F, s->ghosts, 3);
+  if (status == SD_OK) status = sd_rank_spheres_refresh(here, &s->world, F);
   if (status != SD_OK) return status;
-  sd_ewald_pairs_apply(&s->pairs, s->n, F, s->ghosts, u);
+  sd_ewald_pairs_apply(&s->pairs, here->n, F, here->ghosts, u);
   for (int w = 0; w < sd_slab_many_walls(&s->slab.walls); w++)
-    sd_ewald_image_pairs_apply(s->images + w, s->n, F, s->ghosts, u);
-  status = sd_ewald_waves_apply(&s->waves, &s->spheres, F, rows);
+    sd_ewald_image_pairs_apply(s->images + w, here->n, F, here->ghosts, u);
+  status = sd_ewald_waves_apply(&s->waves, &here->spheres, F, rows);
   if (status != SD_OK) return status;
-  add_waves(s, rows, u);
+  sd_rank_spheres_add(here, rows, u);
   add_means(s, sums, u);
   return SD_OK;
 }
@@ -209,10 +186,8 @@ static void release(void *state)
   for (int w = 0; w < 2; w++) sd_ewald_image_pairs_free(s->images + w);
   sd_columns_free(&s->columns);
   sd_ewald_waves_free(&s->waves);
-  free(s->sphere);
+  sd_rank_spheres_free(&s->here);
   free(s->height);
-  free(s->stand);
-  free(s->ghosts);
 }
 
 const sd_mobility_engine sd_mobility_slab = {
