@@ -122,7 +122,7 @@ void BodyScene::add_free(int k)
     const sd_multiblob_shape &shape = scene.shells->free_sphere(scene.shells->kinds_of_rows()[k]);
     add_points(shape, {k});
     shaped.push_back({&shape.points, {1, 0, 0, 0, 1, 0, 0, 0, 1}, scene.local().a[k], eta, nullptr});
-  } else if (scene.settings.boundary.walled() && scene.settings.rotation) {
+  } else if (slowed_by_wall()) {
     member.push_back(k);
     shaped.push_back({nullptr, {}, 1.0, eta, nullptr});
   } else
@@ -295,7 +295,7 @@ sd_status BodyScene::stand_at_wall(sd_body &body, double count)
 void BodyScene::stand_at_wall()
 {
   standing.clear();
-  if (!scene.settings.boundary.walled() || !scene.settings.rotation) return;
+  if (!slowed_by_wall()) return;
   const double count = sum_of_all(world, (double) shaped.size());
   for (sd_body &body : shaped) {
     const sd_status status = stand_at_wall(body, count);
@@ -310,7 +310,7 @@ void BodyScene::stand_at_wall()
 void BodyScene::carry()
 {
   const auto &clumps = poses.clumps();
-  if (!ambient.gradients() || clumps.empty() || scene.shells || scene.settings.boundary.walled()) return;
+  if (!ambient.gradients() || clumps.empty() || scene.shells || slowed_by_wall()) return;
   std::vector<double> gradient(9 * clumps.size()), work(sd_bodies_work(&bodies));
   double centre[3];
   for (size_t c = 0; c < clumps.size(); c++) {

@@ -102,6 +102,8 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   void add(const ClumpPoses::Clump &clump);
   void add_points(const sd_multiblob_shape &shape, const std::vector<int> &rows);
   const sd_multiblob_shape &points_of(const ClumpPoses::Clump &clump) const;
+  /* near a wall no body moves by itself as it does in open space */
+  bool slowed_by_wall() const { return scene.settings.boundary.walled() && scene.settings.rotation; }
   void stand_at_wall();
   sd_status stand_at_wall(sd_body &body, double count);
   std::vector<int> spheres_of(const sd_body &body) const;

@@ -46,17 +46,22 @@ struct Boundary {
   /* before the words are read, as an error that says how two are given */
   static void refuse_second(const Keywords &in, const std::vector<std::string> &words);
   void read_flow(Keywords &in);
+  /* When all words are read: an error for what does not go with a wall, or with flow; torques of spheres of
+   * one point, for whose images there is no Ewald sum, are summed over all pairs. */
+  void settle(const Keywords &in, StokesSettings &settings) const;
 
   bool slab() const { return kind == FLOOR || kind == SLIT || kind == LAYER; }
-  /* Everybody has an image, and so sees himself */
   bool walled() const { return walls > 0; }
+  /* Does everybody have an image, and so see himself? */
+  bool has_images() const { return kind != OPEN; }
   /* That wall whose images pairs have in a law with one at most, and that which matters most to a
    * body at x when it moves alone. sign 0: there is none */
   const sd_wall &image() const { return wall[0]; }
   const sd_wall &nearest(const double x[3]) const;
   sd_slab_walls slab_walls() const;
-  /* "above a floor", as a user would say it; "zlo at 0, or zhi at 5" */
+  /* As a user would say it: "above a floor"; where sums over everybody go; "zlo at 0, or zhi at 5" */
   std::string where() const;
+  std::string summed() const;
   std::string wall_names() const;
   /* "boundary p p f", of a box that is periodic along the walls */
   std::string letters() const;

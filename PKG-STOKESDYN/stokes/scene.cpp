@@ -119,15 +119,14 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
   if (settings.everybody()) {
     engine = engine_of_all();
     if (view() == SD_VIEW_NEAR) {
-      const double count = ewald.count + second_level.count;
-      somebody_sees = count > (ewald.box.periodic || settings.boundary.walled() ? 0.0 : 1.0);
+      look_for_others(ewald.count + second_level.count);
       if (!somebody_sees) return;
       surround(ewald.reach + 2.0 * extent(most), "far_field: the largest radius, " + text(most));
       tell();
       place(size_with_copies());
     } else {
       gather();
-      somebody_sees = (shells ? n_all > 0 : n_all > 1) || (settings.boundary.walled() && n_all > 0);
+      look_for_others(n_all);
       place(n_all);
     }
     return;
@@ -146,6 +145,13 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
     pairs.pairs.n = size();
   }
   place(size_with_copies());
+}
+
+/* Of all ranks, where everybody sees everybody: of two there is another, and of one there is if it has
+ * images, or other points. */
+void Scene::look_for_others(double spheres)
+{
+  somebody_sees = spheres > (shells || settings.boundary.has_images() ? 0.0 : 1.0);
 }
 
 /* Until LAMMPS re-neighbours again, an atom stays within half the skin of where it was when it did
@@ -176,7 +182,7 @@ void Scene::find_pairs()
   } else
     status = sd_neighbors_cutoff(&candidates, x.data(), n, n_all, reach);
   if (status != SD_OK) out_of_memory();
-  const int sees = candidates.first[n] > 0 || (settings.boundary.walled() && n > 0);
+  const int sees = candidates.first[n] > 0 || (settings.boundary.has_images() && n > 0);
   somebody_sees = largest_of_all(world, sees);
   pairs_found.take(epochs.rows);
 }
@@ -186,8 +192,7 @@ void Scene::place(int n_all_or_copies)
 {
   const bool cloud = view() == SD_VIEW_ALL;
   sd_mobility_scene scene = {};
-  scene.how = {law(), width(), view() == SD_VIEW_NEAR ? &ewald : nullptr, &second_level,
-               settings.boundary.slab() ? &slab : nullptr};
+  scene.how = {law(), width(), &ewald, &second_level, &slab};
   scene.n = size();
   scene.n_all = n_all_or_copies;
   scene.spheres = cloud ? this->cloud() : local();

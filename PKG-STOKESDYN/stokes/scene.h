@@ -161,15 +161,15 @@ class Scene : protected LAMMPS_NS::Pointers {
   bool anybody_sees() const { return somebody_sees; }
   bool alone(int k) const
   {
-    if (settings.boundary.walled()) return false;
-    return view() == SD_VIEW_LIST ? list().first[k] == list().first[k + 1] : !somebody_sees;
+    const bool listed = view() == SD_VIEW_LIST && !settings.boundary.has_images();
+    return listed ? list().first[k] == list().first[k + 1] : !somebody_sees;
   }
   /* LAMMPS's, which is periodic in all directions or in none */
   static sd_ewald_box box_of(const LAMMPS_NS::Domain *domain);
   /* View NEAR, but for a slab; else nullptr */
   const sd_ewald *splitting() const
   {
-    return view() == SD_VIEW_NEAR && !settings.boundary.slab() ? &ewald : nullptr;
+    return view() == SD_VIEW_NEAR && engine != &sd_mobility_slab ? &ewald : nullptr;
   }
   /* The box around an open cloud whose sum is split, or the heights of a slab: six numbers to keep, as
    * the next box depends on the last one. */
@@ -258,6 +258,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   void find_rows();
   void surround(double reach, const std::string &keyword);
   void find_pairs();
+  void look_for_others(double spheres);
   void gather();
   void place(int n_all_or_copies);
   void place_points(int n_all_or_copies, sd_mobility_scene &scene);

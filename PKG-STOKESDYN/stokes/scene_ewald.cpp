@@ -155,9 +155,7 @@ void Scene::split_slab()
   const sd_ewald_sizes sizes = sizes_of_all(bounds[0]);
   const double smallest = bounds[1] > 0.0 ? 1.0 / bounds[1] : 0.0;
   if (bounds[0] > SD_SLAB_RATIO * (1.0 + 1e-9) * smallest)
-    voice.fail("keyword far_field: " + settings.boundary.where() +
-               ", periodic along it, the largest radius "
-               "must be at most " +
+    voice.fail("keyword far_field: " + settings.boundary.summed() + ", the largest radius must be at most " +
                text(SD_SLAB_RATIO) + " times the smallest, and they are " +
                text(most) + " and " + text(least) +
                ": use group to select spheres");
@@ -199,9 +197,7 @@ void Scene::tell()
   const sd_ewald &e = ewald;
   std::string now = "Far field by Ewald sums of " + text(e.count + second_level.count) +
       " spheres " +
-      (settings.boundary.slab() ? settings.boundary.where() + ", periodic along it"
-           : e.box.periodic     ? "in the periodic box"
-                                : "in an open box around them") +
+      settings.boundary.summed() +
       (e.images.wall.sign ? " and their images in the wall" : "") + ": " + parameters_of(e);
   if (second_level.from > 0.0)
     now += "; " + text(second_level.count) + " spheres of radius " + text(second_level.from) +

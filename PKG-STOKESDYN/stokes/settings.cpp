@@ -21,6 +21,7 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   if (!in.given("cut_off_distance")) scene.cutoff = INFINITY;
   rigid.clumps_only = scene.clumps_only;
   check(in);
+  scene.boundary.settle(in, *this);
   if (!grid_file.empty()) {
     ambient.grid = FlowFile::read(Voice(lmp, COMMAND).of("keyword fluid_velocity"), grid_file);
     in.require(!ambient.grid_has_visc || ambient.grid->has_viscosity(),
@@ -30,8 +31,7 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   if (scene.far_field_tolerance == 0.0)
     scene.far_field_tolerance = std::max(1e-13, 0.1 * tolerance);
   // What Ewald sums have not got.
-  if (scene.tensor == SD_TENSOR_OSEEN || precondition == Preconditioner::SPARSE ||
-      (scene.boundary.walled() && scene.rotation && !shells.on()))
+  if (scene.tensor == SD_TENSOR_OSEEN || precondition == Preconditioner::SPARSE)
     scene.far_field = Scene::Settings::DIRECT;
   // Points on a surface take torques, whether rotation is asked for or not.
   if (rigid.shell > 1 || shells.on()) scene.rotation = true;
@@ -49,86 +49,118 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
               "' allows errors of the forces of more than a tenth");
 }
 
+void StokesSettings::take_visc(Keywords &in)
+{
+  ambient.grid_has_visc = in.take("grid");
+  if (ambient.grid_has_visc) return;
+  ambient.visc = Field::parse(in);
+  in.check(ambient.visc.is_variable() || ambient.visc.number() > 0.0, "must be > 0");
+}
+
+void StokesSettings::take_fluid_velocity(Keywords &in)
+{
+  if (in.take("grid"))
+    grid_file = in.word();
+  else if (!(ambient.box = in.take("box")))
+    for (Field &u : ambient.velocity) u = Field::parse(in);
+}
+
+void StokesSettings::take_fluid_vorticity(Keywords &in)
+{
+  for (Field &w : ambient.vorticity) w = Field::parse(in);
+  ambient.has_vorticity = true;
+}
+
+void StokesSettings::take_algorithm(Keywords &in)
+{
+  algorithm = in.choice({"1", "2"}) == 0 ? SUBSTITUTION : GRADIENTS;
+  strict = algorithm == SUBSTITUTION && in.take("strict");
+}
+
+void StokesSettings::take_relative_tolerance(Keywords &in)
+{
+  tolerance = in.positive();
+  in.check(tolerance < 1.0, "must be < 1: otherwise forces of 0 are a solution");
+}
+
+void StokesSettings::take_far_field_tolerance(Keywords &in)
+{
+  if (in.take("auto")) return;
+  const double wanted = scene.far_field_tolerance = in.positive();
+  in.check(wanted >= 1e-13 && wanted <= 0.1, "must be from 1e-13 to 0.1");
+}
+
+void StokesSettings::take_rigid_clumps(Keywords &in)
+{
+  const size_t choice = in.choice({"no", "yes", "auto"});
+  rigid.on = choice > 0;
+  rigid.auto_resolve = choice == 2;
+}
+
+void StokesSettings::take_shell(Keywords &in)
+{
+  rigid.shell = in.integer(1);
+  in.check(rigid.shell == 1 || rigid.shell >= 12, "must be 1 or >= 12");
+}
+
+void StokesSettings::take_multiblob(Keywords &in)
+{
+  shells.points = in.integer(1);
+  in.check(!shells.on() || sd_multiblob_has(shells.points) || shells.points == 162, "must be 1, 12, 42 or 162");
+  shells.half = shells.points == 162 || (shells.points == 42 && in.take("half"));
+}
+
+void StokesSettings::take_multiblob_most(Keywords &in)
+{
+  shells.most = in.integer(1);
+  in.check(shells.most == 12 || sd_multiblob_half_of(shells.most), "must be 12, 42, 162 or 642");
+}
+
+void StokesSettings::take_lubrication_gap(Keywords &in)
+{
+  lubrication.gap = in.positive();
+  in.check(lubrication.gap >= 1e-6, "must be >= 1e-6, in mean radii of a pair");
+}
+
+void StokesSettings::take_lubrication_range(Keywords &in)
+{
+  lubrication.range = in.positive();
+  in.check(lubrication.range <= SD_TWO_SPHERE_LARGEST_XI,    // of the films that it knows
+           "must be <= 8, in mean radii of a pair");
+}
+
 void StokesSettings::parse(Keywords &in)
 {
   in.parse({
       {"cut_off_distance", [&] { scene.cutoff = in.take("inf") ? INFINITY : in.positive(); }},
       {"update_every", [&] { update_every = in.integer(1); }},
       {"clumps_only", [&] { scene.clumps_only = in.yes_no(); }},
-      {"visc", [&] {
-         ambient.grid_has_visc = in.take("grid");
-         if (ambient.grid_has_visc) return;
-         ambient.visc = Field::parse(in);
-         in.check(ambient.visc.is_variable() || ambient.visc.number() > 0.0, "must be > 0");
-       }},
+      {"visc", [&] { take_visc(in); }},
       {"region", [&] { ambient.region = in.word(); }},
       {"group", [&] { ambient.group = in.word(); }},
       {"add_force", [&] { add_force = in.yes_no(); }},
-      {"relative_tolerance", [&] {
-         tolerance = in.positive();
-         in.check(tolerance < 1.0, "must be < 1: otherwise forces of 0 are a solution");
-       }},
+      {"relative_tolerance", [&] { take_relative_tolerance(in); }},
       {"max_iter", [&] { max_iter = in.integer(1); }},
-      {"algorithm", [&] {
-         algorithm = in.choice({"1", "2"}) == 0 ? SUBSTITUTION : GRADIENTS;
-         strict = algorithm == SUBSTITUTION && in.take("strict");
-       }},
-      {"fluid_velocity", [&] {
-         if (in.take("grid"))
-           grid_file = in.word();
-         else if (!(ambient.box = in.take("box")))
-           for (Field &u : ambient.velocity) u = Field::parse(in);
-       }},
-      {"fluid_vorticity", [&] {
-         for (Field &w : ambient.vorticity) w = Field::parse(in);
-         ambient.has_vorticity = true;
-       }},
+      {"algorithm", [&] { take_algorithm(in); }},
+      {"fluid_velocity", [&] { take_fluid_velocity(in); }},
+      {"fluid_vorticity", [&] { take_fluid_vorticity(in); }},
       {"rotation", [&] { scene.rotation = in.yes_no(); }},
       {"tensor", [&] { scene.tensor = (sd_tensor) in.choice({"rpy", "oseen"}); }},
-      {"rigid_clumps", [&] {
-         const size_t choice = in.choice({"no", "yes", "auto"});
-         rigid.on = choice > 0;
-         rigid.auto_resolve = choice == 2;
-       }},
-      {"shell", [&] {
-         rigid.shell = in.integer(1);
-         in.check(rigid.shell == 1 || rigid.shell >= 12, "must be 1 or >= 12");
-       }},
-      {"multiblob", [&] {
-         shells.points = in.integer(1);
-         in.check(!shells.on() || sd_multiblob_has(shells.points) || shells.points == 162,
-                  "must be 1, 12, 42 or 162");
-         shells.half = shells.points == 162 || (shells.points == 42 && in.take("half"));
-       }},
-      {"multiblob_most", [&] {
-         shells.most = in.integer(1);
-         in.check(shells.most == 12 || sd_multiblob_half_of(shells.most),
-                  "must be 12, 42, 162 or 642");
-       }},
+      {"rigid_clumps", [&] { take_rigid_clumps(in); }},
+      {"shell", [&] { take_shell(in); }},
+      {"multiblob", [&] { take_multiblob(in); }},
+      {"multiblob_most", [&] { take_multiblob_most(in); }},
       {"one_body", [&] { shells.one_body = in.yes_no(); }},
       {"lubrication", [&] { lubrication.on = in.yes_no(); }},
-      {"lubrication_gap", [&] {
-         lubrication.gap = in.positive();
-         in.check(lubrication.gap >= 1e-6, "must be >= 1e-6, in mean radii of a pair");
-       }},
-      {"lubrication_range", [&] {
-         lubrication.range = in.positive();
-         in.check(lubrication.range <= SD_TWO_SPHERE_LARGEST_XI,    // of the films that it knows
-                  "must be <= 8, in mean radii of a pair");
-       }},
+      {"lubrication_gap", [&] { take_lubrication_gap(in); }},
+      {"lubrication_range", [&] { take_lubrication_range(in); }},
       {"wall", [&] { scene.boundary.read_wall(in); }},
       {"flow", [&] { scene.boundary.read_flow(in); }},
       {"taper", [&] { scene.taper = (sd_taper) in.choice({"none", "wendland", "spherical"}); }},
       {"far_field", [&] { scene.far_field = in.choice({"auto", "direct", "ewald"}); }},
-      {"far_field_tolerance", [&] {
-         if (in.take("auto")) return;
-         const double tolerance = scene.far_field_tolerance = in.positive();
-         in.check(tolerance >= 1e-13 && tolerance <= 0.1, "must be from 1e-13 to 0.1");
-       }},
-      {"precondition", [&] {
-         precondition =
-             (Preconditioner::Kind) in.choice({"auto", "none", "clump", "sparse", "waves"});
-       }},
+      {"far_field_tolerance", [&] { take_far_field_tolerance(in); }},
+      {"precondition",
+       [&] { precondition = (Preconditioner::Kind) in.choice({"auto", "none", "clump", "sparse", "waves"}); }},
       {"warm_start", [&] { warm_start = in.yes_no(); }},
   });
 }
@@ -170,28 +202,6 @@ void StokesSettings::check_close_spheres(const Keywords &in, bool all_pairs) con
                  "' must be below lubrication_range, " + text(lubrication.range));
 }
 
-/* What there is no image for */
-void StokesSettings::check_wall(const Keywords &in) const
-{
-  in.require(!in.given("flow") || scene.boundary.walls == 2,
-             "keyword flow requires two walls (wall zlo ... zhi ...): it says what drives the fluid "
-             "between them");
-  if (!scene.boundary.walled()) return;
-  in.require(scene.tensor != SD_TENSOR_OSEEN,
-             "keyword wall is not available with tensor oseen: use tensor rpy");
-  in.require(scene.far_field != Scene::Settings::EWALD || !scene.rotation || shells.on(),
-             "keyword wall: far_field ewald has no images of torques in a wall: use multiblob 12 in "
-             "place of rotation yes, or far_field auto, which takes all pairs");
-  in.require(precondition != Preconditioner::WAVES,
-             "keyword wall: precondition waves is for periodic boxes: use precondition auto");
-  in.require(!rigid.apart(),
-             "keyword wall: with clumps_only yes rigid clumps have a resistance that is computed "
-             "once, without the wall: use cut_off_distance inf and multiblob 12");
-  in.require(rigid.shell == 1,
-             "keyword wall: a shell is computed once, without the wall: use multiblob 12 in its "
-             "place");
-}
-
 /* Which keywords go together. */
 void StokesSettings::check(const Keywords &in) const
 {
@@ -218,7 +228,6 @@ void StokesSettings::check(const Keywords &in) const
   in.require(!by_ewald || scene.tensor != SD_TENSOR_OSEEN,
              "keyword far_field: 'ewald' is not available with tensor oseen");
   check_close_spheres(in, all_pairs);
-  check_wall(in);
   in.require(precondition != Preconditioner::SPARSE || algorithm == GRADIENTS,
              "keyword precondition: 'sparse' requires algorithm 2");
   in.require(precondition != Preconditioner::WAVES || (all_pairs && algorithm == GRADIENTS),

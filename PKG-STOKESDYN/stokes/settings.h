@@ -13,6 +13,8 @@
 
 namespace StokesDyn {
 
+class Keywords;
+
 struct StokesSettings {
   static constexpr const char *COMMAND = "Pair style stokes_dynamics";
 
@@ -42,10 +44,21 @@ struct StokesSettings {
  private:
   std::string grid_file;
 
-  void parse(class Keywords &in);
-  void check(const class Keywords &in) const;
-  void check_wall(const class Keywords &in) const;
-  void check_close_spheres(const class Keywords &in, bool all_pairs) const;
+  void parse(Keywords &in);
+  void take_visc(Keywords &in);
+  void take_fluid_velocity(Keywords &in);
+  void take_fluid_vorticity(Keywords &in);
+  void take_algorithm(Keywords &in);
+  void take_relative_tolerance(Keywords &in);
+  void take_far_field_tolerance(Keywords &in);
+  void take_rigid_clumps(Keywords &in);
+  void take_shell(Keywords &in);
+  void take_multiblob(Keywords &in);
+  void take_multiblob_most(Keywords &in);
+  void take_lubrication_gap(Keywords &in);
+  void take_lubrication_range(Keywords &in);
+  void check(const Keywords &in) const;
+  void check_close_spheres(const Keywords &in, bool all_pairs) const;
 };
 
 }    // namespace StokesDyn
