@@ -76,8 +76,9 @@ void Ambient::numbers(double *nine) const
   nine[8] = is_series(grid) ? now : 0.0;
 }
 
-void Ambient::read(bool with_spins, Derivatives derivatives, double time)
+void Ambient::read(bool with_spins, Derivatives derivatives, double time, double steps)
 {
+  later = steps;
   spins = with_spins;
   wanted = derivatives;
   now = time;
@@ -100,7 +101,7 @@ void Ambient::read_fluid(Derivatives derivatives)
   const int n = atom->nlocal;
   const bool u_varies = varies(), with_gradients = derivatives >= FIRST;
   if (!numbers_only()) modify->clearstep_compute();
-  motion = u_varies ? motion_of_box(voice) : BoxMotion();
+  motion = u_varies ? motion_of_box(voice, later) : BoxMotion();
 
   eta.resize(settings.visc.is_atom_style() || settings.grid_has_visc ? n + 1 : 0);
   settings.visc.evaluate(lmp, igroup, eta.empty() ? nullptr : eta.data(), 1);

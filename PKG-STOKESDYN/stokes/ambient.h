@@ -63,11 +63,12 @@ class Ambient : protected LAMMPS_NS::Pointers {
    * leaves there. */
   void select();
   /* The fluid of this step, or of its middle. spins: angular velocities count; derivatives of the fluid
-   * velocity that are wanted beside its rotation; time: of this step, for a series.
+   * velocity that are wanted beside its rotation; time: of this step, for a series; later: the box moves
+   * as it will so many steps from now (all else is that of now).
    * Errors, on all ranks: a number that is none, an atom far outside of a periodic box or outside
    * of the grid, with atom and step; a time outside of the series. */
   enum Derivatives { NO_DERIVATIVES, FIRST, SECOND };
-  void read(bool spins, Derivatives derivatives, double time);
+  void read(bool spins, Derivatives derivatives, double time, double later = 0.0);
 
   /* For steps that need the fluid in their middle, while LAMMPS's clock shows their end. look_ahead():
    * the last read() was for the start, and atoms stand there still; reads again, and keeps what time
@@ -171,7 +172,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
   Since members_found;
   double jump[6] = {0.0};
   bool jumping = false;
-  double now = 0.0, eta_uniform = 0.0, u_uniform[3] = {0.0, 0.0, 0.0};
+  double now = 0.0, later = 0.0, eta_uniform = 0.0, u_uniform[3] = {0.0, 0.0, 0.0};
   BoxMotion motion;
   /* per atom, or empty. w: half the vorticity */
   std::vector<double> eta, u, w, gradient, curvature;

@@ -48,12 +48,16 @@ Hydrodynamics &ComputeStokesDynamicsStress::hydrodynamics() const
   return *hydro;
 }
 
-bool ComputeStokesDynamicsStress::asked_in(bigint step) const
+bool ComputeStokesDynamicsStress::wants_low(LAMMPS *lmp)
 {
-  // a list that LAMMPS shortens as it is read: the earlier step first
-  auto *self = const_cast<ComputeStokesDynamicsStress *>(this);
-  const bool now = self->matchstep(step), then = self->matchstep(step + 1);
-  return now || then;
+  const Modify *modify = lmp->modify;
+  for (int k = 0; k < modify->ncompute; k++) {
+    auto *stress = dynamic_cast<ComputeStokesDynamicsStress *>(modify->compute[k]);
+    if (stress && stress->low_variance &&
+        (lmp->update->setupflag || stress->matchstep(lmp->update->ntimestep)))
+      return true;
+  }
+  return false;
 }
 
 void ComputeStokesDynamicsStress::init()
@@ -67,21 +71,23 @@ void ComputeStokesDynamicsStress::find_moments()
   if (!hydro.computed_in((double) update->ntimestep))
     voice.at_step().fail("the forces of this step have not been computed; use this compute in a "
                          "run");
-  const auto movers = fixes_of<FixStokesDynamicsOverdamped>(lmp);
-  const BrownianStress *brownian = movers.empty() ? nullptr : movers[0]->brownian_stress();
-  if (!brownian)
-    hydro.stress(moments);
-  else {
-    if (!brownian->known(low_variance))
-      voice.of("keyword variance").at_step().fail("the stress of the noise was not computed for this step; "
-                                                  "name this compute in thermo_style, fix ave/time or a dump");
-    moments.assign(COLUMNS * ((size_t) atom->nlocal + 1), 0.0);
-    for (int i = 0; i < atom->nlocal; i++)
-      std::copy_n(brownian->of(i, low_variance), (int) COLUMNS, &moments[COLUMNS * (size_t) i]);
-  }
+  hydro.stress(moments);
+  if (low_variance) take_off_noise();
   for (int i = 0; i < atom->nlocal; i++)
     if (!(atom->mask[i] & groupbit))
       std::fill_n(&moments[COLUMNS * (size_t) i], (int) COLUMNS, 0.0);
+}
+
+void ComputeStokesDynamicsStress::take_off_noise()
+{
+  for (const FixStokesDynamicsOverdamped *mover : fixes_of<FixStokesDynamicsOverdamped>(lmp)) {
+    if (!mover->has_noise_in_solve()) return;
+    const std::vector<double> *of_noise = mover->stress_of_noise();
+    if (!of_noise)
+      voice.of("keyword variance").at_step().fail("the stress of the noise was not computed for this step; "
+                                                  "name this compute in thermo_style, fix ave/time or a dump");
+    for (size_t k = 0; k < COLUMNS * (size_t) atom->nlocal; k++) moments[k] -= (*of_noise)[k];
+  }
 }
 
 /* LAMMPS's rigid bodies sum the virial x F_y, not (x F_y + y F_x)/2, of the forces that hold their

@@ -1,5 +1,20 @@
 /* compute stokes_dynamics/stress: the stress of spheres that are shells of points.
- * See doc/compute_stokes_dynamics_stress.md. */
+ * See doc/compute_stokes_dynamics_stress.md.
+ *
+ * With noise it contains the stress that Brownian motion adds, without any further term. The solve of a step
+ * has its points at x' = x + dt/2 v' and its films at x'' = x + dt/2 v'' (sd_drifter.h), and first moments
+ *
+ *   D = Q^T l + B V,   l = M'^-1 (K V - y),   V = N (K^T M'^-1 y + f),   C = Q^T M'^-1 K N + B N
+ *
+ * (C: loads on bodies -> D), so that in second order
+ *
+ *   <D> = kT [ div C - Q^T M'^-1 sum_k (d_k M') A_k - sum_k (d_k Q)^T A_k ] = kT div C
+ *
+ * as the second term is 0, or made up for as the drift is, and so is the third one. The random forces f of
+ * films, which come from nowhere, are no stress themselves. At x the same y and f alone make a D of mean 0
+ * that has nearly all of the variance: `variance low` takes it off.
+ * Source: the mean is that of Bossis & Brady, J. Chem. Phys. 87, 5437 (1987), -R_SU R_FU^-1 there; reference
+ * of the project, noise-faster.md 3. */
 #ifndef SD_COMPUTE_STOKES_DYNAMICS_STRESS_H
 #define SD_COMPUTE_STOKES_DYNAMICS_STRESS_H
 
@@ -23,11 +38,8 @@ class ComputeStokesDynamicsStress : public LAMMPS_NS::Compute {
   void compute_peratom() override;
   double memory_usage() override;
 
-  /* With noise: less the stress of the same random numbers at the start of the step? */
-  bool low() const { return low_variance; }
-  /* Has somebody said that this will be asked for in that step, or in the one after it? Who asks in every
-   * step says so at the end of each, when the next one has begun */
-  bool asked_in(LAMMPS_NS::bigint step) const;
+  /* Has somebody said that one of these with `variance low` will be asked for in this step? */
+  static bool wants_low(LAMMPS_NS::LAMMPS *lmp);
 
  private:
   const Voice voice;
@@ -40,6 +52,7 @@ class ComputeStokesDynamicsStress : public LAMMPS_NS::Compute {
 
   Hydrodynamics &hydrodynamics() const;
   void find_moments();
+  void take_off_noise();
   void add_others(double *virial) const;
 };
 

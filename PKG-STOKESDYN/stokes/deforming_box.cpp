@@ -34,12 +34,13 @@ namespace {
     double now, rate;
   };
 
-  /* The clock of fix deform: since the run began, and how much of the run that is. */
+  /* The clock of fix deform, or one so many steps ahead: since the run began, and how much of the run that
+   * is; and by how long it is ahead of what variables know */
   struct Clock {
-    double time, part, length;
-    explicit Clock(const Update *update)
+    double time, part, length, ahead;
+    Clock(const Update *update, double later) : ahead(later * update->dt)
     {
-      const double steps = update->ntimestep - update->beginstep,
+      const double steps = update->ntimestep - update->beginstep + later,
                    all = update->endstep - update->beginstep;
       time = steps * update->dt;
       part = all > 0.0 ? steps / all : 0.0;
@@ -71,7 +72,8 @@ static Edge edge_of(LAMMPS *lmp, const Set &set, double start, double stop, doub
     }
     case DeformSettings::VARIABLE: {
       Variable *variable = lmp->input->variable;
-      return {start + variable->compute_equal(set.hvar), variable->compute_equal(set.hratevar)};
+      const double rate = variable->compute_equal(set.hratevar);
+      return {start + variable->compute_equal(set.hvar) + clock.ahead * rate, rate};
     }
     default:
       return {now, clock.length > 0.0 ? (stop - start) / clock.length : 0.0};
@@ -106,7 +108,7 @@ template <class Set> static Edge volume_edge(const Set &set, int d, const Edge *
   return {now, rate * now};
 }
 
-BoxMotion motion_of_box(const Voice &voice)
+BoxMotion motion_of_box(const Voice &voice, double later)
 {
   BoxMotion motion;
   LAMMPS *lmp = voice.lmp;
@@ -116,7 +118,7 @@ BoxMotion motion_of_box(const Voice &voice)
   if (lmp->update->setupflag) DeformSettings::check(lmp, deform);
   const Domain *domain = lmp->domain;
   const auto set = DeformSettings::of(deform);
-  const Clock clock(lmp->update);
+  const Clock clock(lmp->update, later);
   Edge edge[6];
   for (int d = 0; d < 6; d++) {
     edge[d] = {d < 3 || domain->triclinic ? domain->h[d] : 0.0, 0.0};
@@ -209,7 +211,18 @@ void bring_box_to_this_step(LAMMPS *lmp)
   if (due == lmp->update->ntimestep) deform->next_reneighbor = due;
 }
 
-static sd_box box_of(const Domain *domain)
+void check_strain(const Voice &voice, const BoxMotion &flow)
+{
+  const sd_box now = box_of(voice.lmp->domain), then = box_later(flow, now, voice.lmp->update->dt);
+  static const int ALONG[6] = {0, 1, 2, 1, 0, 0};
+  double largest = 0.0;
+  for (int d = 0; d < 6; d++) largest = std::max(largest, fabs(then.h[d] - now.h[d]) / now.h[ALONG[d]]);
+  if (largest > 0.45)
+    voice.at_step().fail("the box strains by " + text(largest) + " of an edge in a step, and fix deform cannot "
+                         "follow: use a shorter time step");
+}
+
+sd_box box_of(const Domain *domain)
 {
   const Lattice lattice = Lattice::of(domain);
   sd_box box;
@@ -218,15 +231,7 @@ static sd_box box_of(const Domain *domain)
   return box;
 }
 
-BoxInStep::BoxInStep(LAMMPS *lmp) : start(box_of(lmp->domain)), domain(lmp->domain)
-{
-  bring_box_to_this_step(lmp);
-  end = box_of(domain);
-  for (int d = 0; d < 3; d++) middle.lo[d] = 0.5 * (start.lo[d] + end.lo[d]);
-  for (int d = 0; d < 6; d++) middle.h[d] = 0.5 * (start.h[d] + end.h[d]);
-}
-
-void BoxInStep::put(const sd_box &box) const
+void put_box(Domain *domain, const sd_box &box)
 {
   for (int d = 0; d < 3; d++) {
     domain->boxlo[d] = box.lo[d];
@@ -239,6 +244,24 @@ void BoxInStep::put(const sd_box &box) const
   }
   domain->set_global_box();
   domain->set_local_box();
+}
+
+/* The edges are (h0 0 0), (h5 h1 0), (h4 h3 h2), and grow by the gradient times them. */
+sd_box box_later(const BoxMotion &flow, const sd_box &now, double t)
+{
+  const double *h = now.h, *G = flow.gradient;
+  const double rate[6] = {G[0] * h[0],
+                          G[4] * h[1],
+                          G[8] * h[2],
+                          G[4] * h[3] + G[5] * h[2],
+                          G[0] * h[4] + G[1] * h[3] + G[2] * h[2],
+                          G[0] * h[5] + G[1] * h[1]};
+  double u[3];
+  sd_box then = now;
+  flow.at(now.lo, u);
+  for (int d = 0; d < 3; d++) then.lo[d] += t * u[d];
+  for (int d = 0; d < 6; d++) then.h[d] += t * rate[d];
+  return then;
 }
 
 void Ride::step(const double *V, const double *place, const double *x, double *step) const

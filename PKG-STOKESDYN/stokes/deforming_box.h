@@ -33,8 +33,8 @@ struct BoxMotion {
   }
 };
 
-/* Of this step. Error: a style of fix deform that says no rate (deform/pressure). */
-BoxMotion motion_of_box(const Voice &voice);
+/* Of this step, or so many steps later. Error: a style of fix deform that says no rate (deform/pressure). */
+BoxMotion motion_of_box(const Voice &voice, double later = 0.0);
 
 /* Does fix deform change the box as the fluid and the spheres need it? Errors that name it:
  *   remap x      moves the spheres with the box; where the fluid carries them they would move twice
@@ -55,19 +55,15 @@ void check_images(const Voice &voice, const double *jump);
  * then finds it done. On all ranks. */
 void bring_box_to_this_step(LAMMPS_NS::LAMMPS *lmp);
 
-/* The box at the start, in the middle and at the end of a step that is computed in its middle. In the
- * middle it is the mean of the two, as fix deform leads its edges: exact where lengths and tilts change
- * evenly, else to second order in the step. Brings the box to the end at once; put() makes one of them
- * LAMMPS's. On all ranks. */
-class BoxInStep {
- public:
-  explicit BoxInStep(LAMMPS_NS::LAMMPS *lmp);
-  sd_box start, middle, end;
-  void put(const sd_box &box) const;
+/* Does fix deform follow such a flow in a step? It takes a tilt that is nearest to the last one, which is
+ * another one beyond half an edge. Error: the box strains by more, at least nearly. */
+void check_strain(const Voice &voice, const BoxMotion &flow);
 
- private:
-  LAMMPS_NS::Domain *domain;
-};
+/* LAMMPS's box, and another one in its place. On all ranks. */
+sd_box box_of(const LAMMPS_NS::Domain *);
+void put_box(LAMMPS_NS::Domain *, const sd_box &);
+/* The box `now`, as it is a time t later: exact where edges change evenly, else to second order */
+sd_box box_later(const BoxMotion &flow, const sd_box &now, double t);
 
 /* How far bodies go in the half step from the start of a step, or in all of it by velocities of its
  * middle. */
@@ -75,10 +71,10 @@ struct Ride {
   double t;    // how long they go
   /* Does the flow take the box along? Then velocities beyond that of the box count, which are the same for
    * a body and its images, and the box carries what has been moved (sd_box_step) */
-  bool carried;
-  sd_box start, at, to;
+  bool carried = false;
+  sd_box start = {}, at = {}, to = {};
   /* where velocities are of */
-  BoxMotion flow;
+  BoxMotion flow = {};
   /* step [3] of a body that is at x when the step starts, by V [3], which it has at `place` in the box
    * `at`. Not carried: t V */
   void step(const double *V, const double *place, const double *x, double *step) const;

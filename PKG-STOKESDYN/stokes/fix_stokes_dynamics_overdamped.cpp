@@ -25,7 +25,7 @@ using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), adapt(), noise(voice), stress(lmp), spin(voice), directions(lmp), torques(voice),
+    RowsFix(lmp, narg, arg), adapt(), noise(voice), spin(voice), directions(lmp), torques(voice),
     squirmers(voice, directions), motion(3), random(6), load(6), before(9), output(OUTPUTS)
 {
   Keywords in = keywords(narg, arg);
@@ -67,7 +67,7 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
   extscalar = 1;
   extvector = 0;
   global_freq = 1;
-  std::vector<RowsOfAtoms *> rows = {&motion, &random, &load, &before, &spin.slipping, &output, &stress.rows};
+  std::vector<RowsOfAtoms *> rows = {&motion, &random, &load, &before, &spin.slipping, &output};
   if (directions.on()) rows.push_back(&directions.turning);
   keep(rows, &output, true);
 }
@@ -95,10 +95,7 @@ void FixStokesDynamicsOverdamped::init()
                                : "";
   if (!scheme_given)
     scheme = noise.on() && !noise.drift(hydrodynamics(), holds).empty() ? MIDPOINT : AB2;
-  const bool deforms = hydrodynamics().ambient.settings.box || fix_like(lmp, "^deform");
-  one_solve = scheme == MIDPOINT && noise.on() && !stress.wanted() && !deforms;
-  if (noise.on())
-    noise.init(hydrodynamics(), {adapt.every > 0, scheme == MIDPOINT, one_solve, holds});
+  if (noise.on()) noise.init(hydrodynamics(), {adapt.every > 0, scheme == MIDPOINT, holds});
   if (scheme == MIDPOINT) refuse_midpoint(hydrodynamics());
 }
 
@@ -231,7 +228,6 @@ void FixStokesDynamicsOverdamped::after_setup()
   if (!same_run || !causes_stand(hydro)) {
     before.clear();
     load.clear();
-    stress.forget();
   }
   hydro.new_run(same_run);
   if (same_run && from_file && adapt.every && last.next_dt > 0.0) set_step(last.next_dt);
@@ -278,7 +274,7 @@ sd_body_known FixStokesDynamicsOverdamped::given_velocity(int i, double *V) cons
   if (atom->mask[i] & pinned.bit) return SD_BODY_PINNED;
   if (!is_held(i)) return spin.turns(i, V + 3) ? SD_BODY_SPUN : SD_BODY_FREE;
   if (!is_moved(i)) return SD_BODY_HELD;
-  std::copy_n(dragged.v.empty() ? atom->v[i] : &dragged.v[3 * (size_t) i], 3, V);
+  std::copy_n(dragged.empty() ? atom->v[i] : &dragged[3 * (size_t) i], 3, V);
   if (atom->omega_flag) std::copy_n(atom->omega[i], 3, V + 3);
   return SD_BODY_HELD;
 }
@@ -295,6 +291,7 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
 {
   check_selection(hydro);
   check_images(voice, hydro.ambient.jumps());
+  check_strain(voice, hydro.ambient.box_motion());
   double causes[CAUSES];
   find_causes(hydro, causes);
   forget_before_change(causes);
@@ -325,7 +322,7 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
     push_on(i, pushed);
     spin.look(i, V + 3, F + 3, pushed + 3);
   };
-  if (one_solve)
+  if (scheme == MIDPOINT && noise.on())
     find_noisy_velocities(hydro, take);
   else if (scheme == MIDPOINT)
     begin_midpoint(hydro, take);
@@ -392,13 +389,13 @@ double FixStokesDynamicsOverdamped::weight(bool has) const
 
 void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
 {
-  if (scheme != MIDPOINT || one_solve) advance();
+  if (scheme != MIDPOINT) advance();
 }
 
 /* Where those of fix move go is known by now, in whatever order the two fixes stand. */
 void FixStokesDynamicsOverdamped::post_integrate()
 {
-  if (scheme == MIDPOINT && !one_solve) advance();
+  if (scheme == MIDPOINT) advance();
   if (!moved_bits || !atom->omega_flag) return;
   const Hydrodynamics &hydro = hydrodynamics();
   for (int i : hydro.ambient.who()) {
@@ -423,11 +420,12 @@ void FixStokesDynamicsOverdamped::advance()
   hydro.check_prepared();
   displaced = 0.0;
   if (scheme != MIDPOINT && !warned_growth) watch();
-  if (one_solve)
-    move_with_noise(hydro);
-  else if (scheme == MIDPOINT)
-    move_by_midpoint(hydro);
-  else {
+  if (scheme == MIDPOINT) {
+    if (noise.on())
+      make_step(hydro, found(hydro));
+    else
+      move_by_midpoint(hydro);
+  } else {
     bring_box_to_this_step(lmp);    // first: spheres of a clump may be images across faces that move
     for (int i : hydro.motion().lone()) move_free(hydro, i);
     if (hydro.settings.rigid.on) move_clumps(hydro);
@@ -498,9 +496,9 @@ FixStokesDynamicsOverdamped::Clumps FixStokesDynamicsOverdamped::clumps_now(cons
   return now;
 }
 
-/* Clumps from where they stood, start; how each goes is what step(c) says. take(i, row) for each of their atoms, which have been moved. Positions are those of images side by
- * side: an atom moves as its image does, less what the edges of the box between them have moved
- * since. */
+/* Clumps from where they stood; how each goes is what step(c) says. take(i, row) for each of their atoms, which
+ * have been moved. Positions are those of images side by side: an atom moves as its image does, less what the
+ * edges of the box between them have moved since. */
 void FixStokesDynamicsOverdamped::step_clumps(Hydrodynamics &hydro, const Clumps &start, const Step &step,
                                               const std::function<void(int, const double *)> &take)
 {

@@ -8,7 +8,6 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 #define SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 
-#include "brownian_stress.h"
 #include "deforming_box.h"
 #include "directions.h"
 #include "hydrodynamics.h"
@@ -43,11 +42,10 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void final_integrate() override;
   void end_of_step() override;
 
-  /* What compute stokes_dynamics/stress shows; nullptr: the last solve, as there is no noise in it */
-  const BrownianStress *brownian_stress() const
-  {
-    return noise.on() && scheme == MIDPOINT ? &stress : nullptr;
-  }
+  /* For compute stokes_dynamics/stress: does the last solve have noise, and what did the same noise alone make
+   * where the step begins, as Hydrodynamics::stress? nullptr: nobody asked for it in time */
+  bool has_noise_in_solve() const { return noise.on() && scheme == MIDPOINT; }
+  const std::vector<double> *stress_of_noise() const;
   /* kT times the bodies of this rank that noise moves */
   double ideal_pressure() const;
 
@@ -64,7 +62,6 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   } adapt;
 
   Noise noise;
-  BrownianStress stress;
   Spin spin;
   Directions directions;
   Torques torques;
@@ -73,8 +70,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   /* [3] velocity of a free sphere that is in no clump, by which the next step goes: LAMMPS's v is output,
    * and others may write to it */
   AtomRows motion;
-  /* [6] y of a free sphere (noise.h), of its turn only where it has a direction; scheme midpoint in
-   * two solves: random force and torque */
+  /* [6] schemes ab2 and euler: y of a free sphere (noise.h), of its turn only where it has a direction */
   AtomRows random;
   /* [6] scheme midpoint: force and torque on a sphere in the step before */
   AtomRows load;
@@ -82,11 +78,9 @@ class FixStokesDynamicsOverdamped : public RowsFix {
    * moves */
   KeywordGroup held, pinned;
   int moved_bits = 0;
-  /* scheme midpoint, of those that fix move moves, [3 nlocal]: where they stood when velocities were
-   * found; in the half step, while v is not empty, their velocity in it */
-  struct {
-    std::vector<double> x, v;
-  } dragged;
+  /* scheme midpoint, of those that fix move moves, in its solve in the middle of a step: [3 nlocal] their
+   * velocity in this step; else empty */
+  std::vector<double> dragged;
   /* [9] U, of a clump and W, of the step before, and where the sphere, or the centroid of the clump,
    * was put by it; U is that of the point by which the clump is moved. When LAMMPS has made an image
    * of it since, v_old is that of the image. A clump has the row at its atom of lowest tag, which is
@@ -151,9 +145,6 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void refuse_midpoint(const Hydrodynamics &) const;
   void push_on(int i, double *FT) const;
   Given given() const;
-  std::vector<double> random_loads(const Hydrodynamics &) const;
-  void begin_midpoint(Hydrodynamics &, const Solve::Take &take);
-  void find_half_step(const Hydrodynamics &, std::vector<double> &x);
   /* Clumps at the start of a step, their spheres x [3 members] side by side, each so many edges h of the box
    * away from its atom: all as in WholeClumps */
   struct Clumps {
@@ -176,26 +167,35 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void step_clumps(Hydrodynamics &, const Clumps &start, const Step &step,
                    const std::function<void(int i, const double *row)> &take);
   void clump_moves(Hydrodynamics &, int i, const double *row);
-  void place_clumps(Hydrodynamics &, const Clumps &start, const Ride &ride);
-  /* A step where it begins: who takes part, and who of them are no clumps; directions, and places
-   * [3 nlocal] */
-  struct Start {
+
+  // --- scheme midpoint (fix_stokes_dynamics_overdamped_midpoint.cpp)
+
+  /* A step where it begins: who takes part, and who of them are no clumps; places, directions, the box. And
+   * its middle, of which velocities are: places, the box */
+  struct {
     std::vector<int> who, lone;
+    Places x, there;
     Clumps clumps;
-    std::vector<double> mu, x;
-  };
-  void place(Hydrodynamics &, const Start &start, const Ride &ride, const std::vector<double> &there,
-             const std::vector<double> &V);
-  void check_strain(const BoxMotion &flow) const;
+    std::vector<double> mu;
+    sd_box box, middle;
+  } start;
+  void begin_step(const Hydrodynamics &);
+  void stand_at_start();
+  Places places_now(const Hydrodynamics &) const;
+  Moves found(const Hydrodynamics &) const;
+  Ride half_step(const BoxMotion &flow, bool carried) const;
+  using Taken = std::function<void(int i, const double *row)>;
+  void place(Hydrodynamics &, const Ride &ride, const Places &there, const Moves &V, const Taken &take);
+  void begin_midpoint(Hydrodynamics &, const Solve::Take &take);
   void move_by_midpoint(Hydrodynamics &);
-  /* With noise, decided before a run: by one solve (fix_stokes_dynamics_overdamped_noise.cpp); not where the
-   * fluid goes with the box, or a compute asks for the stress: those are made for random forces and two
-   * solves. */
-  bool one_solve = false;
-  Start start;    // of the step that one solve makes
-  void place(Hydrodynamics &, const Start &start, const Moves &moves, double part);
+  void make_step(Hydrodynamics &, const Moves &V);
+
+  // --- the same with noise (fix_stokes_dynamics_overdamped_noise.cpp)
+
+  /* first moments of the noise alone, [12 nlocal], and of which step */
+  std::vector<double> moments_of_noise;
+  LAMMPS_NS::bigint moments_step = -1;
   void find_noisy_velocities(Hydrodynamics &, const Solve::Take &take);
-  void move_with_noise(Hydrodynamics &);
   void watch();
   double fastest() const;
   double change_of_velocities() const;

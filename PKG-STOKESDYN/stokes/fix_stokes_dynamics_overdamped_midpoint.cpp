@@ -1,5 +1,4 @@
-/* Of fix stokes_dynamics/overdamped: scheme midpoint in two solves, of second order without
- * noise.
+/* Of fix stokes_dynamics/overdamped: scheme midpoint, and its two solves, of second order, without noise.
  *
  *   F* = F + dt/(2 dt_old) (F - F_old)
  *   v = V(x, F*),  x_mid = x + dt/2 v           where velocities are found: v is output
@@ -9,9 +8,7 @@
  * mean velocity of the step. The fluid at x_mid is that of the middle of the step.
  * Forces are extrapolated, so that they are found once per step.
  *
- * With noise a step is made otherwise (fix_stokes_dynamics_overdamped_noise.cpp), but where the box deforms
- * with the fluid, or a compute asks for the stress. There the noise is a force, the same in both places: then
- * the second-order term of the step has the mean kT div M dt. Kept as a velocity it would have none.
+ * With noise V is found otherwise, by one solve (fix_stokes_dynamics_overdamped_noise.cpp).
  *
  * Where the fluid takes the box along, the step is the same one for coordinates s = H^-1 (x - x_lo) in the
  * edges H of the box, ds/dt = H^-1 (V - u_box), in which the box stands still: x_mid and its images are
@@ -19,15 +16,14 @@
  * left, x' = S(dt) x + S(dt/2) dt (V - u_box) in a simple shear S. Added at the end of the step instead, the
  * displacement leaves <xy> of a dumbbell low by half of dt times its rate of relaxation. F_old is kept as it
  * is in space: it is a force that the step needs at x_mid, not one that goes with the box.
- * Source: Fixman, J. Chem. Phys. 69, 1527 (1978). */
+ * Source: reference of the project, noise-faster.md 2. */
 #include "fix_stokes_dynamics_overdamped.h"
 
 #include "fixes.h"
 #include "keywords.h"
 
-#include "sd_linear.h"
-
 #include "atom.h"
+#include "domain.h"
 #include "fix.h"
 #include "update.h"
 
@@ -57,138 +53,130 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
                  " moves it every " + std::to_string(deform->nevery) + " steps: give it 1");
 }
 
-/* [6 nlocal] random forces and torques, in whose sum with the others spheres move */
-std::vector<double> FixStokesDynamicsOverdamped::random_loads(const Hydrodynamics &hydro) const
+void FixStokesDynamicsOverdamped::begin_step(const Hydrodynamics &hydro)
 {
-  std::vector<double> all(6 * (size_t) atom->nlocal + 6, 0.0);
-  for (int i : hydro.ambient.who()) std::copy_n(random[i], 6, &all[6 * (size_t) i]);
-  return all;
+  start.who = hydro.ambient.who();
+  start.lone = hydro.motion().lone();
+  start.clumps = clumps_now(hydro);
+  start.x = places_now(hydro);
+  start.mu = directions.all();
+  start.box = box_of(domain);
 }
+
+/* All but those of fix move stay in between, and nobody migrates: atoms keep their ranks and their numbers. */
+void FixStokesDynamicsOverdamped::stand_at_start()
+{
+  for (int i : start.who) std::copy_n(&start.x.atoms[3 * (size_t) i], 3, atom->x[i]);
+  directions.restore(start.mu);
+}
+
+Places FixStokesDynamicsOverdamped::places_now(const Hydrodynamics &hydro) const
+{
+  Places x;
+  x.atoms.assign(3 * (size_t) atom->nlocal + 3, 0.0);
+  for (int i : hydro.ambient.who()) std::copy_n(atom->x[i], 3, &x.atoms[3 * (size_t) i]);
+  for (const ClumpPoses::Clump &clump : hydro.motion().clumps())
+    x.clumps.insert(x.clumps.end(), clump.pose + 9, clump.pose + 12);
+  return x;
+}
+
+/* Velocities of the last solve; of those that fix move has moved since the step began their mean in it */
+Moves FixStokesDynamicsOverdamped::found(const Hydrodynamics &hydro) const
+{
+  Moves V;
+  V.atoms.assign(6 * (size_t) atom->nlocal + 6, 0.0);
+  for (size_t i : start.lone) {
+    std::copy_n(motion[i], 3, &V.atoms[6 * i]);
+    if (directions.on()) std::copy_n(directions.turning[i], 3, &V.atoms[6 * i + 3]);
+    for (size_t d = 0; d < 3 && is_moved(i); d++)
+      V.atoms[6 * i + d] = (atom->x[i][d] - start.x.atoms[3 * i + d]) / update->dt;
+  }
+  for (const ClumpPoses::Clump &clump : hydro.motion().clumps())
+    V.clumps.insert(V.clumps.end(), clump.V, clump.V + 6);
+  return V;
+}
+
+Ride FixStokesDynamicsOverdamped::half_step(const BoxMotion &flow, bool carried) const
+{
+  const double half = 0.5 * update->dt;
+  return {half, carried, start.box, start.box, box_later(flow, start.box, half), flow};
+}
+
+/* All from where they stood at the start, by velocities V that are those of the places `there`; take: rows of
+ * clumps (step_clumps) */
+void FixStokesDynamicsOverdamped::place(Hydrodynamics &hydro, const Ride &ride, const Places &there,
+                                        const Moves &V, const Taken &take)
+{
+  static const double CENTROID[3] = {0.0, 0.0, 0.0};
+  const auto go = [&](bool stays, const double *v, const double *at, const double *from, double move[6]) {
+    for (int d = 0; d < 6; d++) move[d] = ride.t * v[d];
+    if (!stays) ride.step(v, at, from, move);
+    keep_in_plane(move, 6);
+  };
+  stand_at_start();
+  for (size_t i : start.lone) {
+    double move[6];
+    go(stays((int) i), &V.atoms[6 * i], &there.atoms[3 * i], &start.x.atoms[3 * i], move);
+    for (size_t d = 0; d < 3; d++) atom->x[i][d] += move[d];
+    if (!is_held((int) i)) directions.turn((int) i, move + 3, 1.0);
+  }
+  if (!hydro.settings.rigid.on) return;
+  const auto step = [&](size_t c) {
+    const ClumpPoses::Clump &clump = start.clumps.all[c];
+    ClumpStep s = {CENTROID, {}, nullptr};
+    go(clump.known == SD_BODY_PINNED, &V.clumps[6 * c], &there.clumps[3 * c], clump.pose + 9, s.move);
+    return s;
+  };
+  step_clumps(hydro, start.clumps, step, take);
+}
+
+/* In its box, by velocities of its middle */
+void FixStokesDynamicsOverdamped::make_step(Hydrodynamics &hydro, const Moves &V)
+{
+  const double dt = update->dt;
+  bring_box_to_this_step(lmp);
+  const Ride all = {dt,           hydro.ambient.jumps() != nullptr, start.box,
+                    start.middle, box_of(domain),                   hydro.ambient.box_motion()};
+  place(hydro, all, start.there, V, [&](int i, const double *row) { clump_moves(hydro, i, row); });
+  for (int i : start.who) load_on(i, load.give(i));
+  for (int i : start.lone) {
+    const double *v = &V.atoms[6 * (size_t) i], step[3] = {dt * v[0], dt * v[1], dt * v[2]};
+    if (!is_held(i)) moves(i, step);
+  }
+}
+
+// --- without noise --------------------------------------------------------------------------------------------
 
 void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Solve::Take &take)
 {
-  const int width = hydro.rotation() ? 6 : 3;
-  Solve::Forces forces;
-  if (noise.on())
-    forces = noise.forces(hydro, [this, width](int i, const double *f) {
-      std::copy_n(f, width, random.give(i));
-    });
-  if (noise.on() && stress.wants_low()) {
-    hydro.velocities([](int, const double *, const double *) {}, given());
-    stress.without_noise(hydro);
-  }
-  hydro.velocities(take, given(), 0.0, noise.on() ? &forces : nullptr);
-  if (noise.on()) stress.begin(hydro, random_loads(hydro));
-  dragged.x.assign(3 * (size_t) atom->nlocal + 3, 0.0);
-  for (int i : hydro.ambient.who())
-    if (is_moved(i)) std::copy_n(atom->x[i], 3, &dragged.x[3 * (size_t) i]);
+  hydro.velocities(take, given());
+  begin_step(hydro);
 }
 
-/* Of those that fix move has moved: x [3 nlocal] becomes where they were at the start of the step, V
- * their mean velocity in it */
-void FixStokesDynamicsOverdamped::find_half_step(const Hydrodynamics &hydro, std::vector<double> &x)
-{
-  dragged.v.assign(3 * (size_t) atom->nlocal + 3, 0.0);
-  for (int i : hydro.ambient.who())
-    for (size_t d = 0; d < 3 && is_moved(i); d++) {
-      const size_t at = 3 * (size_t) i + d;
-      dragged.v[at] = (x[at] - dragged.x[at]) / update->dt;
-      x[at] = dragged.x[at];
-    }
-}
-
-/* By the velocities of now. Positions of atoms are those of the start. */
-void FixStokesDynamicsOverdamped::place_clumps(Hydrodynamics &hydro, const Clumps &start, const Ride &ride)
-{
-  static const double CENTROID[3] = {0.0, 0.0, 0.0};
-  const auto step = [&](size_t c) {
-    const ClumpPoses::Clump &clump = hydro.motion().clumps()[c];
-    ClumpStep s = {CENTROID, {}, nullptr};
-    for (int d = 0; d < 6; d++) s.move[d] = ride.t * clump.V[d];
-    if (clump.known != SD_BODY_PINNED) ride.step(clump.V, clump.pose + 9, start.all[c].pose + 9, s.move);
-    keep_in_plane(s.move, 6);
-    return s;
-  };
-  step_clumps(hydro, start, step, [&](int i, const double *row) {
-    if (ride.t == update->dt) clump_moves(hydro, i, row);
-  });
-}
-
-/* fix deform takes the tilt next to that of before, which is another one beyond half an edge. */
-void FixStokesDynamicsOverdamped::check_strain(const BoxMotion &flow) const
-{
-  double largest = 0.0;
-  for (double rate : flow.gradient) largest = std::max(largest, fabs(rate) * update->dt);
-  if (largest > 0.45)
-    voice.at_step().of("keyword scheme").fail("midpoint: the box strains by " + text(largest) +
-                                              " in a step, and fix deform cannot follow: use a shorter time step");
-}
-
-/* All from where they stood at the start, by velocities V [6 nlocal], which those that are free have at the
- * places `there` [3 nlocal] */
-void FixStokesDynamicsOverdamped::place(Hydrodynamics &hydro, const Start &start, const Ride &ride,
-                                        const std::vector<double> &there, const std::vector<double> &V)
-{
-  const std::vector<double> &x = start.x;
-  for (int i : start.who) std::copy_n(&x[3 * (size_t) i], 3, atom->x[i]);
-  directions.restore(start.mu);
-  for (size_t i : start.lone) {
-    const double *v = is_held((int) i) ? &dragged.v[3 * i] : &V[6 * i];
-    double step[3];
-    if (stays((int) i))
-      for (size_t d = 0; d < 3; d++) step[d] = ride.t * v[d];
-    else
-      ride.step(v, &there[3 * i], &x[3 * i], step);
-    for (size_t d = 0; d < 3; d++) atom->x[i][d] += step[d];
-    if (!is_held((int) i)) directions.turn((int) i, v + 3, ride.t);
-  }
-  if (hydro.settings.rigid.on) place_clumps(hydro, start.clumps, ride);
-}
-
-/* Half the step by the velocities of now, all of it by those there, in the frame that goes with the box.
- * Atoms keep their ranks and their numbers: nobody migrates in between. */
+/* Half the step by the velocities of now, all of it by those there, in the frame that goes with the box. */
 void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
 {
-  const double dt = update->dt;
   const size_t width = hydro.rotation() ? 6 : 3;
-  const bool carried = hydro.ambient.jumps();
-  const BoxMotion flow = hydro.ambient.box_motion();
-  Start start = {hydro.ambient.who(), hydro.motion().lone(), clumps_now(hydro), directions.all(),
-                 std::vector<double>(3 * (size_t) atom->nlocal + 3)};
-  std::vector<double> V(2 * start.x.size());
-  for (int i : start.who) {
-    std::copy_n(atom->x[i], 3, &start.x[3 * (size_t) i]);
-    std::copy_n(motion[i], 3, &V[6 * (size_t) i]);
-    if (directions.on()) std::copy_n(directions.turning[i], 3, &V[6 * (size_t) i + 3]);
-  }
-  find_half_step(hydro, start.x);
-  for (int i : start.who) std::copy_n(&start.x[3 * (size_t) i], 3, atom->x[i]);
+  const Ride half = half_step(hydro.ambient.box_motion(), hydro.ambient.jumps() != nullptr);
+  Moves V = found(hydro);
+  dragged.assign(3 * (size_t) atom->nlocal + 3, 0.0);
+  for (size_t i : start.lone)
+    if (is_moved((int) i)) std::copy_n(&V.atoms[6 * i], 3, &dragged[3 * i]);
+  stand_at_start();
   hydro.look_ahead();
-  check_strain(flow);
-  const BoxInStep box(lmp);
-  if (flow.deforms) box.put(box.middle);
-  place(hydro, start, {0.5 * dt, carried, box.start, box.start, box.middle, flow}, start.x, V);
-  std::vector<double> there(start.x.size());
-  for (int i : start.who) std::copy_n(atom->x[i], 3, &there[3 * (size_t) i]);
+  if (half.flow.deforms) put_box(domain, half.to);
+  place(hydro, half, start.x, V, [](int, const double *) {});
   hydro.begin(Hydrodynamics::MIDDLE);
   hydro.ambient.half_a_step_back();
-  Given known = given();
-  if (noise.on())
-    known.loads = [this](int i, double *FT) {
-      push_on(i, FT);
-      for (int d = 0; d < 6; d++) FT[d] += random[i][d];
-    };
   hydro.velocities([this, &V, width](int i, const double *v, const double *) {
-    std::copy_n(v, width, &V[6 * (size_t) i]);
-    keep_in_plane(&V[6 * (size_t) i], 6);
-  }, known);
-  if (noise.on()) stress.middle(hydro, random_loads(hydro));
-  if (flow.deforms) box.put(box.end);
-  place(hydro, start, {dt, carried, box.start, box.middle, box.end, hydro.ambient.box_motion()}, there, V);
-  dragged.v.clear();
-  for (int i : start.who) load_on(i, load.give(i));
-  for (int i : start.lone) {
-    const double *v = &V[6 * (size_t) i], step[3] = {dt * v[0], dt * v[1], dt * v[2]};
-    if (!is_held(i)) moves(i, step);
-  }
+    if (!is_moved(i)) std::copy_n(v, width, &V.atoms[6 * (size_t) i]);
+  }, given());
+  V.clumps.clear();
+  for (const ClumpPoses::Clump &clump : hydro.motion().clumps())
+    V.clumps.insert(V.clumps.end(), clump.V, clump.V + 6);
+  dragged.clear();
+  start.middle = half.to;
+  start.there = places_now(hydro);
+  if (half.flow.deforms) put_box(domain, start.box);
+  make_step(hydro, V);
 }

@@ -156,8 +156,5 @@ std::vector<SavedNumbers> FixStokesDynamicsOverdamped::saved()
           {"dt", &last.dt},
           {"next_dt", &last.next_dt},
           {"atoms", &last.atoms},
-          {"stress", &stress.raw},
-          {"stress_low", &stress.low},
-          {"stress_next", &stress.next},
           {"causes", last.causes, CAUSES}};
 }

@@ -41,6 +41,8 @@ class Guess : protected LAMMPS_NS::Pointers {
 
   /* With shells: is l that of this step's solve? The forces of the points, of it or the last one */
   bool found_now() const { return found.is(epochs.step); }
+  /* In a step that is solved elsewhere too: so it is now, though nothing is kept of it. */
+  void found_in_passing() { found.take(epochs.step); }
   std::vector<double> points_now() const { return found_now() ? l : recall_points(0.0); }
 
  private:

@@ -101,7 +101,7 @@ void Hydrodynamics::begin(Moment moment)
   const Ambient::Derivatives wanted = shells.settings.on() ? Ambient::SECOND
       : settings.rigid.on                                  ? Ambient::FIRST
                                                            : Ambient::NO_DERIVATIVES;
-  ambient.read(rotation(), wanted, memory->time());
+  ambient.read(rotation(), wanted, memory->time(), moment == HALF_LATER ? 0.5 : 0.0);
   if (scene.settings.whole) scene.whole.find();
   if (!cleared.first_in(epochs.selection)) return;
   for (int i = 0; i < atom->nlocal; i++)
@@ -192,8 +192,7 @@ void Hydrodynamics::solve()
   guess.keep(bodies, given, solver.exerted);
 }
 
-void Hydrodynamics::velocities(const Solve::Take &take, const Given &known, double drawn,
-                               const Solve::Forces *forces)
+void Hydrodynamics::velocities(const Solve::Take &take, const Given &known, double drawn)
 {
   State::Global &global = memory->global;
   sd_solve_report report = {};
@@ -206,7 +205,7 @@ void Hydrodynamics::velocities(const Solve::Take &take, const Given &known, doub
     for (int i : solvers)
       memory->rows.give(i);    // those that have one are known to have moved here
   } else
-    status = find_motions(take, drawn, forces, report);
+    status = find_motions(take, drawn, report);
   // v' is none of this: a solve for forces begins from nothing.
   global.last_step = update->ntimestep;
   global.last_solve = -1;
@@ -286,18 +285,20 @@ sd_status Hydrodynamics::find_forces(sd_solve_report &report)
 }
 
 /* In one loop, with lubrication in it. New random numbers leave nothing to begin from. */
-sd_status Hydrodynamics::find_motions(const Solve::Take &take, double drawn, const Solve::Forces *forces,
-                                      sd_solve_report &report)
+sd_status Hydrodynamics::find_motions(const Solve::Take &take, double drawn, sd_solve_report &report)
 {
-  if (drawn == 0.0) bodies.begin_films();
+  if (drawn == 0.0) {
+    bodies.begin_films();
+    solver.forget_noise();
+    moments_left.clear();
+  }
   assemble();
   if (settings.lubrication.on) {
-    if (drawn == 0.0) lubrication.place(scene, ambient, forces != nullptr);
+    if (drawn == 0.0) lubrication.place(scene, &ambient);
     solver.tie_films();
   }
   if (drawn > 0.0) solver.push();
-  if (forces) solver.draw_forces(*forces);
-  const bool warm = guess.recall(bodies, given) && drawn == 0.0 && !forces;
+  const bool warm = guess.recall(bodies, given) && drawn == 0.0;
   const sd_status status =
       solver.run({warm, std::max(settings.tolerance, drawn), settings.max_iter}, guess, report);
   poses.moves(&solver.V[6 * bodies.first_clump()]);

@@ -30,10 +30,11 @@
 namespace StokesDyn {
 
 /* Velocities or displacements of bodies: U and W of free spheres, [6 nlocal], 0 of others; and of the clumps
- * of this rank, [6 clumps] */
+ * of this rank, [6 clumps]. And places: of atoms [3 nlocal], of centroids [3 clumps] */
 struct Moves {
   std::vector<double> atoms, clumps;
 };
+using Places = Moves;
 
 class Hydrodynamics : protected LAMMPS_NS::Pointers {
  public:
@@ -58,9 +59,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void init();
   /* Error: other settings than those of init() ('run' with 'pre no' behind pair_style) */
   void check_prepared() const;
-  /* Reads the fluid and finds the memory; in a step, who takes part too. In its middle that, and all
-   * lists, stand as they are. Errors: Ambient::read; check_prepared(); a memory that has been deleted. */
-  enum Moment { STEP, MIDDLE };
+  /* Reads the fluid and finds the memory; in a step, who takes part too. In its middle, elsewhere than
+   * there, that and all lists stand as they are; half a step later, the box moves as it will then. Errors:
+   * Ambient::read; check_prepared(); a memory that has been deleted. */
+  enum Moment { STEP, MIDDLE, HALF_LATER };
   void begin(Moment moment = STEP);
   /* For a step that is computed in its middle: Ambient::look_ahead */
   void look_ahead();
@@ -74,14 +76,15 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* Of all that takes part, from its loads, in any order; and forces on those that are held. A step is
    * begin() and this. Where all interact, the forces go to rows of the memory too: the next guess.
    * drawn: with the noise of draw(), films as films() has left them, and to this tolerance, or that of the
-   * settings if it is larger; 0: without that. forces: random forces too, where all interact */
-  void velocities(const Solve::Take &take, const Given &known, double drawn = 0.0,
-                  const Solve::Forces *forces = nullptr);
+   * settings if it is larger; 0: without that. */
+  void velocities(const Solve::Take &take, const Given &known, double drawn = 0.0);
 
-  // --- a step with noise, where all interact (hydrodynamics_noise.cpp): begin(MIDDLE) and one of these at
-  // each place, draw() first, then velocities()
+  // --- a step with noise, where all interact (hydrodynamics_noise.cpp): begin() and one of these at each
+  // place, draw() first, then velocities()
 
   void draw(const Given &known, const Solve::Draw &draw);
+  /* There, and to this tolerance: stress() of the same noise alone, whose mean is 0 */
+  void stress_of_noise(double tolerance, std::vector<double> &of_atoms);
   Moves half_step_of_points() const { return moves_of(solver.of_points); }
   Moves half_step_of_films() const { return moves_of(solver.of_films); }
   /* Is difference() needed, at x + W and x - W with the signs 1 and -1? */
@@ -98,9 +101,10 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
   /* With shells, since the last step: first moments of the forces on the fluid, of the spheres'
    * points and of their films, [12 nlocal]: xx yy zz xy xz yz of each. Points about the centre of
-   * their sphere; without inertia also what keeps clumps together against loads, but for noise [6 nlocal],
-   * or nothing, which is among them. On all ranks together. */
-  void stress(std::vector<double> &of_atoms, const std::vector<double> &noise = {});
+   * their sphere; without inertia also what keeps clumps together against loads. Random forces of films are
+   * no stress: with them the mean is that of Bossis & Brady (compute_stokes_dynamics_stress.h). On all ranks
+   * together. */
+  void stress(std::vector<double> &of_atoms);
 
   /* In a step that was computed, until its end: what makes the flow, of this rank. [10 n]: place,
    * radius, and force and torque on the fluid, over its viscosity, of each sphere or point of its
@@ -173,8 +177,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void lubricate();
   void find_films_power();
   sd_status find_forces(sd_solve_report &report);
-  sd_status find_motions(const Solve::Take &take, double drawn, const Solve::Forces *forces,
-                         sd_solve_report &report);
+  sd_status find_motions(const Solve::Take &take, double drawn, sd_solve_report &report);
   void assemble();
   Moves moves_of(const std::vector<double> &V) const;
   void look_at_step(const sd_solve_report &report, bool preconditioned);
@@ -186,8 +189,13 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   struct Points {
     std::vector<double> r, x, b, l;
   };
+  Points points_that_stand() const;    // without forces
   Points points_of_now();
-  void add_constraints(const std::vector<double> &noise, double *S) const;
+  /* S [6 rows] += first moments of forces f [3 rows] on the spheres of clumps, about the centroid */
+  void add_on_members(const std::vector<double> &f, double *S) const;
+  void add_wanderers(double part);
+  /* [6 rows], or empty: what the mean of the first moments lacks, of the solve with noise */
+  std::vector<double> moments_left;
   std::vector<double> of_points_on_fluid(std::vector<double> *viscosity);
   int algorithm() const    // of the next solve
   {

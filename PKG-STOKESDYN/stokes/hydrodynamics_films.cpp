@@ -71,7 +71,7 @@ void Hydrodynamics::place_films()
 {
   surround();
   read_motion();
-  lubrication.place(scene, ambient);
+  lubrication.place(scene, &ambient);
 }
 
 void Hydrodynamics::lubricate()

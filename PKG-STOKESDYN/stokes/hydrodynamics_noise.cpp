@@ -2,6 +2,7 @@
  * sd_drifter.h). Atoms stand where the fix has put them, in this order:
  *
  *   draw()                x                      random slip y and forces of films; half steps v' and v''
+ *   stress_of_noise()     x                      for whoever wants that
  *   difference()          x + e W, x - e W       where the mean of one solve lacks some of the drift
  *   films()               x + dt/2 v''
  *   velocities()          x + dt/2 v'            one solve: M' here, L there
@@ -31,13 +32,27 @@ void Hydrodynamics::draw(const Given &known, const Solve::Draw &draw)
 {
   solvers = ambient.who();
   given = known;
+  moments_left.clear();
   bodies.begin_films();
   assemble();
   if (settings.lubrication.on) {
-    lubrication.place(scene, ambient, true);
+    lubrication.place(scene, &ambient, true);
     solver.tie_films();
   }
   solver.draw(draw);
+}
+
+void Hydrodynamics::stress_of_noise(double tolerance, std::vector<double> &of_atoms)
+{
+  sd_solve_report report = {};
+  if (settings.lubrication.on) lubrication.place(scene, nullptr);
+  solver.push_alone();
+  guess.recall(bodies, given);
+  const sd_status status =
+      solver.run({false, std::max(settings.tolerance, tolerance), settings.max_iter}, guess, report);
+  judge(status, report);
+  guess.found_in_passing();
+  stress(of_atoms);
 }
 
 /* V [6 bodies] of lone spheres and of clumps */
@@ -60,6 +75,24 @@ void Hydrodynamics::difference(const Given &known, double sign)
   given = known;
   assemble();
   solver.difference(sign);
+  if (shells.settings.on()) add_wanderers(sign * solver.part());
+}
+
+/* Of bodies that turn the mean of first moments Q^T l lacks kT sum_k (d_k Q)^T A_k, as slip and load do. */
+void Hydrodynamics::add_wanderers(double part)
+{
+  const Points now = points_that_stand();
+  const std::vector<double> &l = solver.wanderers();
+  const size_t n = scene.size();
+  const int *first = shells.first_of_rows();
+  std::vector<double> S(6 * n + 6, 0.0), f(3 * n + 3, 0.0);
+  sd_multiblob_moments((int) n, first, now.r.data(), l.data(), S.data());
+  for (size_t k = 0; k < n; k++)
+    for (size_t p = first[k]; p < (size_t) first[k + 1]; p++)
+      for (size_t d = 0; d < 3; d++) f[3 * k + d] += l[3 * p + d];
+  add_on_members(f, S.data());
+  moments_left.resize(6 * n + 6, 0.0);
+  for (size_t j = 0; j < S.size(); j++) moments_left[j] += part * S[j];
 }
 
 void Hydrodynamics::films(const Given &known)
@@ -70,7 +103,7 @@ void Hydrodynamics::films(const Given &known)
   scene.stand(solvers, ambient);
   scene.turn_shells();
   bodies.stand_films();
-  lubrication.place(scene, ambient);
+  lubrication.place(scene, &ambient);
 }
 
 }    // namespace StokesDyn

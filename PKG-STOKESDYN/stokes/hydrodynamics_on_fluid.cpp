@@ -16,16 +16,23 @@ namespace StokesDyn {
 
 using State = FixStokesDynamicsState;
 
-void Hydrodynamics::stress(std::vector<double> &of_atoms, const std::vector<double> &noise)
+/* What keeps a member of a clump in its place is what it exerts on the fluid less what acts on it, but for
+ * random forces of films: these come from nowhere. */
+void Hydrodynamics::stress(std::vector<double> &of_atoms)
 {
   const bool films_stand = standing();
   stand_rows();
   if (settings.lubrication.on && !films_stand) place_films();
   const Points now = points_of_now();
   const size_t n = scene.size();
-  std::vector<double> points(6 * n + 6, 0.0), films(6 * n + 6, 0.0);
+  std::vector<double> points(6 * n + 6, 0.0), films(6 * n + 6, 0.0), f(3 * n + 3);
   sd_multiblob_moments((int) n, shells.first_of_rows(), now.r.data(), now.l.data(), points.data());
-  if (overdamped) add_constraints(noise, points.data());
+  const std::vector<double> &random = solver.random_forces();
+  for (size_t k = 0; k < n && overdamped; k++)
+    for (size_t d = 0; d < 3; d++)
+      f[3 * k + d] = solver.exerted[6 * k + d] - bodies.F[6 * k + d] + (random.empty() ? 0.0 : random[6 * k + d]);
+  if (overdamped) add_on_members(f, points.data());
+  for (size_t j = 0; j < moments_left.size(); j++) points[j] += moments_left[j];
   if (settings.lubrication.on) {
     const double *v = overdamped ? solver.v.data() : films_v.data();
     const sd_status status = sd_lubrication_stress(lubrication.matrix(), v, films.data());
@@ -39,21 +46,23 @@ void Hydrodynamics::stress(std::vector<double> &of_atoms, const std::vector<doub
     });
 }
 
-/* What keeps member k of a clump in its place is what it exerts on the fluid less what acts on it.
- * S [6 rows] += first moments of that */
-void Hydrodynamics::add_constraints(const std::vector<double> &noise, double *S) const
+void Hydrodynamics::add_on_members(const std::vector<double> &f, double *S) const
 {
-  const size_t first = scene.lone(), n = scene.size() - first;
-  std::vector<double> f(3 * n + 3);
-  for (size_t k = 0; k < n; k++)
-    sd_minus(&solver.exerted[6 * (first + k)], &bodies.F[6 * (first + k)], &f[3 * k]);
-  if (!noise.empty()) {
-    const std::vector<double> random =
-        scene.rows(3, [&](int i, double *out) { std::copy_n(&noise[6 * (size_t) i], 3, out); });
-    for (size_t d = 0; d < 3 * n; d++) f[d] += random[3 * first + d];
-  }
-  for (size_t k = 0; k < n; k++)
-    sd_multiblob_moment(1, &bodies.arms()[3 * (first + k)], &f[3 * k], S + 6 * (first + k));
+  for (size_t k = scene.lone(); k < (size_t) scene.size(); k++)
+    sd_multiblob_moment(1, &bodies.arms()[3 * k], &f[3 * k], S + 6 * k);
+}
+
+Hydrodynamics::Points Hydrodynamics::points_that_stand() const
+{
+  const int n = scene.size();
+  const size_t points = shells.first_of_rows()[n];
+  const sd_multiblob_spheres spheres = shells.spheres(scene.local(), n);
+  Points now;
+  now.r.resize(3 * points + 3);
+  now.x.resize(3 * points + 3);
+  now.b.resize(points + 1);
+  sd_multiblob_expand(shells.all_models(), &spheres, now.r.data(), now.x.data(), now.b.data());
+  return now;
 }
 
 /* Where no solve was needed in this step the rows of the scene may be those of another one. */
@@ -63,14 +72,7 @@ Hydrodynamics::Points Hydrodynamics::points_of_now()
     voice.at_step().fail("the forces of the points are not kept with warm_start no; use warm_start "
                          "yes");
   stand_rows();
-  const int n = scene.size();
-  const size_t points = shells.first_of_rows()[n];
-  const sd_multiblob_spheres spheres = shells.spheres(scene.local(), n);
-  Points now;
-  now.r.resize(3 * points + 3);
-  now.x.resize(3 * points + 3);
-  now.b.resize(points + 1);
-  sd_multiblob_expand(shells.all_models(), &spheres, now.r.data(), now.x.data(), now.b.data());
+  Points now = points_that_stand();
   now.l = guess.points_now();
   return now;
 }

@@ -86,13 +86,16 @@ void Lubrication::surround(const Scene &where)
   if (where.drift_of_images()) halo.place(where.drift_of_images(), nullptr, drift.data());
 }
 
-void Lubrication::place(Scene &where, const Ambient &ambient, bool noisy)
+void Lubrication::place(Scene &where, const Ambient *fluid, bool noisy)
 {
   const bool halves = where.shells && where.shells->halves();
   surround(where);
   if (where.largest() > 0.0) provide(where.largest(), where.smallest(), halves);
-  u = where.rows(6, [&](int i, double *out) { ambient.fluid(i, out); });
-  where.drift(u.data(), 6, 1.0);
+  u.assign(6 * (size_t) where.size() + 6, 0.0);
+  if (fluid) {
+    u = where.rows(6, [&](int i, double *out) { fluid->fluid(i, out); });
+    where.drift(u.data(), 6, 1.0);
+  }
   sd_lubrication_scene scene = {};
   scene.functions = functions.get();
   scene.films = shells.on() ? &films : nullptr;
@@ -106,7 +109,7 @@ void Lubrication::place(Scene &where, const Ambient &ambient, bool noisy)
   scene.spheres = {x.data(), a.data(), w.data()};
   scene.body = where.all_molecules().data();
   scene.u = u.data();
-  scene.drift = drift.empty() ? nullptr : drift.data();
+  scene.drift = !fluid || drift.empty() ? nullptr : drift.data();
   scene.noisy = noisy;
   scene.world = ranks();
   check(sd_lubrication_place(&near, &scene));

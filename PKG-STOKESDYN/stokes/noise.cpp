@@ -194,19 +194,6 @@ Solve::Draw Noise::slip(const Hydrodynamics &hydro)
           not_positive};
 }
 
-/* Of a third of the tolerance: slow modes of forces are off by more than those of velocities. */
-Solve::Forces Noise::forces(const Hydrodynamics &hydro, const Take &take)
-{
-  find_temperature(hydro);
-  divided = false;
-  const auto told = [this](sd_status status, const sd_noise_report &report) {
-    last = report;
-    if (status != SD_OK) no_root(status);
-  };
-  return {&of_bodies,       key(SD_RANDOM_SPHERE),   key(SD_RANDOM_FILM),
-          tolerance / 10.0, scale(1.0 / update->dt), take, told};
-}
-
 void Noise::announce(const Hydrodynamics &hydro, double smallest, double drag) const
 {
   const double step = drag > 0.0 ? scale(update->dt) / sqrt(drag) : 0.0;
@@ -298,7 +285,7 @@ void Noise::init(Hydrodynamics &hydro, const Ways &ways)
   midpoint = ways.midpoint;
   const bool addition = hydro.settings.shells.on() && hydro.settings.shells.one_body;
   const double positive = addition ? SD_EWALD_POSITIVE_ADDITION : SD_EWALD_POSITIVE;
-  hydro.scene.settings.positive = midpoint && !ways.one_solve ? 0.0 : positive;
+  hydro.scene.settings.positive = positive;
   told_of_whole = false;
 }
 

@@ -3,7 +3,6 @@
  *
  *   step = sqrt(2 kT dt) y,     y of covariance M           where the mobility has no drift
  *   slip = sqrt(2 kT/dt) y,     y of covariance M'          scheme midpoint (solve.h)
- *   force = sqrt(2 kT/dt) f,    f of covariance R = M^-1    the same, in boxes that deform or for the stress
  *
  * Numbers are drawn where velocities are found, at the positions of that moment, and depend on atom
  * IDs, the step and the seed alone: nothing is kept for restarts, and a second setup draws the
@@ -36,11 +35,10 @@ class Noise : protected LAMMPS_NS::Pointers {
   /* Is there a temperature that is not always 0? Otherwise none of the rest is called. */
   bool on() const { return temperature.is_variable() || temperature.number() > 0.0; }
 
-  /* What else the fix does. midpoint: steps that have the drift of the mobility (forces(), below);
+  /* What else the fix does. midpoint: steps that have the drift of the mobility (slip(), below);
    * holds: the keyword that holds somebody, or nothing */
   struct Ways {
-    /* midpoint: with one solve, or with random forces in two */
-    bool adapts, midpoint, one_solve;
+    bool adapts, midpoint;
     std::string holds;
   };
   /* What makes a drift, as errors name it; empty: nothing does, and ab2 and euler are right */
@@ -58,9 +56,6 @@ class Noise : protected LAMMPS_NS::Pointers {
   void draw(Hydrodynamics &hydro, size_t width, const Take &take);
   /* For the solve of this step, in scheme midpoint. Errors as of draw(). */
   Solve::Draw slip(const Hydrodynamics &hydro);
-  /* For both solves of a step without that: random forces and torques on all spheres, whose covariance is the
-   * resistance of all that moves, 2 kT/dt times. Errors as of draw(). */
-  Solve::Forces forces(const Hydrodynamics &hydro, const Take &take);
   /* To which that solve is made: slow modes of velocities are off by less than those of the root */
   double tolerance_of_solve() const { return tolerance / 3.0; }
   /* sqrt(2 kT dt) for a step dt from there */

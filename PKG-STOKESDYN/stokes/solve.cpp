@@ -18,7 +18,8 @@ Solve::Solve(LAMMPS *lmp, Scene &scene, BodyScene &bodies, Lubrication &lubricat
 double Solve::memory_usage() const
 {
   double numbers = (double) room;
-  for (const auto *array : {&exerted, &v, &V, &F, &drag, &spin, &work, &slip, &pushed, &wandering})
+  for (const auto *array : {&exerted, &v, &V, &F, &drag, &spin, &work, &slip, &pushed, &slip_left,
+                            &load_left, &wandering})
     numbers += (double) array->capacity();
   return sizeof(double) * numbers + preconditioner.memory_usage();
 }

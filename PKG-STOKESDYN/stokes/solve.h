@@ -74,26 +74,23 @@ class Solve : protected LAMMPS_NS::Pointers {
    * and are tied; and the half steps of sd_drifter.h: velocities [6 bodies]. On all ranks together. */
   void draw(const Draw &draw);
   std::vector<double> of_points, of_films;
-  /* Without one solve: random forces and torques of covariance R, the resistance of all bodies with their
-   * films, times `scale`, and what becomes of them: forces and torques F [width] on atom i */
-  struct Forces {
-    sd_bodies_noise *noise;
-    sd_random_key of_spheres, of_films;
-    double tolerance, scale;
-    std::function<void(int i, const double *F)> take;
-    std::function<void(sd_status status, const sd_noise_report &report)> report;
-  };
-  void draw_forces(const Forces &draw);
   /* After draw(): does the mean of a solve have all of the drift? Otherwise it lacks
    *   slip    kT sum_k (d_k M') A_k  =  <[M'(x + e W) - M'(x - e W)] A W> kT/(2 e)
    *   torque -kT sum_k (d_k K)^T A_k    likewise,      W [6 bodies] random, of variance 1 or e
    * the same on all ranks. wander(): e W, for a draw; difference(): the bodies have been assembled at
-   * x + sign e W. */
+   * x + sign e W. A W [points], and the part kT/(2 e) of it, for others of whom something is left. */
   bool needs_differences() const { return differs; }
   std::vector<double> wander(const Draw &draw);
   void difference(double sign);
-  /* The bodies have been assembled for the solve: u and F with what was drawn. */
+  const std::vector<double> &wanderers() const { return wandering; }
+  double part() const { return kT / (2.0 * reach); }
+  /* The bodies have been assembled for the solve: u and F with what was drawn and what is left of the drift; or
+   * what was drawn alone, in a fluid at rest and without loads; or nothing, and nothing was drawn. */
   void push();
+  void push_alone();
+  void forget_noise() { pushed.clear(); }
+  /* [width spheres] random forces of the films; empty: there is no noise */
+  const std::vector<double> &random_forces() const { return pushed; }
 
   /* The rows of spheres that are points, for the solvers of these; of shells their drags alone count */
   sd_system system();
@@ -109,9 +106,9 @@ class Solve : protected LAMMPS_NS::Pointers {
 
   /* by spheres: force of the fluid, what system() points to; scratch of sd_bodies */
   std::vector<double> F, drag, spin, work;
-  /* what was drawn: by rows, by spheres; A W by rows, e and kT of it */
+  /* what was drawn: by rows, by spheres; what is left of the drift, likewise; A W by rows, e and kT of it */
   BodyNoise shapes;
-  std::vector<double> slip, pushed, wandering;
+  std::vector<double> slip, pushed, slip_left, load_left, wandering;
   std::vector<const sd_body_follow *> follow;
   bool differs = false;
   double reach = 0.0, kT = 0.0;

@@ -28,9 +28,8 @@ std::vector<double> Solve::numbers(const sd_random_key &of_spheres) const
   return w;
 }
 
-/* Where the sum is split, the near
- * part's process and the waves at once; a near part that is not positive is told of, and the whole matrix
- * takes its place. */
+/* Where the sum is split, the near part's process and the waves at once; a near part that is not positive is
+ * told of, and the whole matrix takes its place. */
 void Solve::draw_slip(const Draw &draw)
 {
   const sd_bodies &A = bodies.bodies;
@@ -58,25 +57,6 @@ void Solve::draw_slip(const Draw &draw)
   if (status == SD_OK && divided) status = sd_mobility_draw(scene.mobility(), &draw.of_waves, waves.data());
   draw.report(status, report, divided);
   for (size_t j = 0; j < rows; j++) slip[j] = draw.scale * (slip[j] + (divided ? waves[j] : 0.0));
-}
-
-void Solve::draw_forces(const Forces &draw)
-{
-  const sd_bodies &A = bodies.bodies;
-  const Voice voice(lmp, StokesSettings::COMMAND);
-  const std::vector<double> w = numbers(draw.of_spheres);
-  std::vector<double> of_rows(sd_bodies_rows(&A) + 1);
-  shapes.begin(scene.since().run);
-  const auto roots = shapes.roots(voice, bodies.in_open_space(), nullptr);
-  const sd_bodies_blocks blocks = {bodies.in_open_space().data(), roots.data()};
-  sd_noise_report report = {};
-  pushed.assign(sd_bodies_loads(&A) + bodies.width, 0.0);
-  sd_status status = sd_bodies_draw_forces(draw.noise, &A, &blocks, w.data(), draw.tolerance, of_rows.data(),
-                                           pushed.data(), &report);
-  if (status == SD_OK && A.tie) status = lubrication.draw(scene, draw.of_films, pushed.data());
-  draw.report(status, report);
-  for (long j = 0; j < sd_bodies_loads(&A); j++) bodies.F[j] += pushed[j] *= draw.scale;
-  scene.to_atoms(bodies.width, pushed.data(), draw.take);
 }
 
 /* How each body follows, and whether that leaves nothing of the drift: not where the mobility is not that of
@@ -111,12 +91,12 @@ void Solve::add_own()
     double turned[3];
     for (size_t i = 0; i < (size_t) own->n; i += 3) {
       sd_multiply3(all[b].R, own->slip + i, turned);
-      double *there = &slip[width * all[b].row[i / width] + i % width];
+      double *there = &slip_left[width * all[b].row[i / width] + i % width];
       for (size_t d = 0; d < 3; d++) there[d] += kT / all[b].eta * turned[d];
     }
     sd_multiply3(all[b].R, own->torque, turned);
     const size_t point = all[b].row[0], sphere = A.points.whole ? A.points.whole[point] : point;
-    for (size_t d = 0; d < 3; d++) pushed[A.spheres.width * sphere + 3 + d] -= kT * turned[d];
+    for (size_t d = 0; d < 3; d++) load_left[A.spheres.width * sphere + 3 + d] -= kT * turned[d];
   }
 }
 
@@ -129,6 +109,8 @@ void Solve::draw(const Draw &draw)
   kT = draw.kT;
   draw_slip(draw);
   pushed.assign(sd_bodies_loads(&A) + bodies.width, 0.0);
+  slip_left.assign(slip.size(), 0.0);
+  load_left.assign(pushed.size(), 0.0);
   sd_status status = SD_OK;
   if (A.tie) {
     status = lubrication.draw(scene, draw.of_films, pushed.data());
@@ -193,22 +175,29 @@ void Solve::difference(double sign)
   const size_t count = sd_bodies_count(&A), n = scene.size();
   std::vector<double> scratch(18 * count + 6 * n + 2 * sd_bodies_rows(&A) + 1), load(6 * count + 6);
   const sd_status status = sd_drifter_difference(&A, wandering.data(), sign * kT / (2.0 * reach), scratch.data(),
-                                                 slip.data(), load.data());
+                                                 slip_left.data(), load.data());
   if (status != SD_OK)
     fail_by(Voice(lmp, StokesSettings::COMMAND).at_step().of("the drift by differences"), status);
   std::vector<char> done(count + 1, 0);
   for (size_t k = 0; k < n; k++) {
     const size_t b = A.spheres.whole[k];
     for (size_t d = 3; d < 6 && !done[b] && b >= bodies.first_clump(); d++)
-      pushed[(size_t) A.spheres.width * k + d] += load[6 * b + d];
+      load_left[(size_t) A.spheres.width * k + d] += load[6 * b + d];
     done[b] = 1;
   }
 }
 
 void Solve::push()
 {
-  for (long j = 0; j < sd_bodies_rows(&bodies.bodies); j++) bodies.u[j] += slip[j];
-  for (long j = 0; j < sd_bodies_loads(&bodies.bodies); j++) bodies.F[j] += pushed[j];
+  for (long j = 0; j < sd_bodies_rows(&bodies.bodies); j++) bodies.u[j] += slip[j] + slip_left[j];
+  for (long j = 0; j < sd_bodies_loads(&bodies.bodies); j++) bodies.F[j] += pushed[j] + load_left[j];
+}
+
+void Solve::push_alone()
+{
+  std::copy_n(slip.begin(), bodies.u.size(), bodies.u.begin());
+  std::copy_n(pushed.begin(), bodies.F.size(), bodies.F.begin());
+  std::fill(bodies.velocities.begin(), bodies.velocities.end(), 0.0);
 }
 
 }    // namespace StokesDyn

@@ -134,13 +134,8 @@ static long largest_block(const sd_bodies *A, const sd_bodies_blocks *blocks)
   return 2 * n;
 }
 
-/* Whichever of the two processes of sd_noise.h this is */
-typedef sd_status process_of(sd_noise *, const sd_noise_matrix *, const double *w, double tolerance, double *out,
-                             sd_noise_report *report);
-
-static sd_status draw_by(process_of *process, sd_bodies_noise *s, const sd_bodies *A,
-                         const sd_bodies_blocks *blocks, const double *w, double tolerance, double *out,
-                         sd_noise_report *report)
+sd_status sd_bodies_draw(sd_bodies_noise *s, const sd_bodies *A, const sd_bodies_blocks *blocks,
+                         const double *w, double tolerance, double *y, sd_noise_report *report)
 {
   const long rows = sd_bodies_rows(A), motions = 6 * (long) sd_bodies_count(A);
   const long all = 2 * rows + 3 * motions + 6 * (long) A->spheres.n + largest_block(A, blocks) + 1;
@@ -160,24 +155,5 @@ static sd_status draw_by(process_of *process, sd_bodies_noise *s, const sd_bodie
                              .half_inverse = half_inverse,
                              .half_ctx = &d,
                              .world = A->world};
-  return process(&s->process, &M, w, tolerance, out, report);
-}
-
-sd_status sd_bodies_draw(sd_bodies_noise *s, const sd_bodies *A, const sd_bodies_blocks *blocks,
-                         const double *w, double tolerance, double *y, sd_noise_report *report)
-{
-  return draw_by(sd_noise_velocities, s, A, blocks, w, tolerance, y, report);
-}
-
-sd_status sd_bodies_draw_forces(sd_bodies_noise *s, const sd_bodies *A, const sd_bodies_blocks *blocks,
-                                const double *w, double tolerance, double *f, double *F,
-                                sd_noise_report *report)
-{
-  const sd_status status = draw_by(sd_noise_forces, s, A, blocks, w, tolerance, f, report);
-  if (status != SD_OK) return status;
-  if (A->points.whole)
-    sd_rigid_collect(&A->points, f, A->spheres.n, F);
-  else
-    memcpy(F, f, sizeof(double) * (size_t) sd_bodies_loads(A));
-  return SD_OK;
+  return sd_noise_velocities(&s->process, &M, w, tolerance, y, report);
 }

@@ -40,16 +40,6 @@ typedef struct {
 sd_status sd_bodies_draw(sd_bodies_noise *s, const sd_bodies *A, const sd_bodies_blocks *blocks,
                          const double *w, double tolerance, double *y, sd_noise_report *report);
 
-/* Where two places of a step need the same numbers, or what the noise does to the stress is asked for: forces
- * on the spheres, F [width spheres], for which a solve finds velocities of the same covariance,
- *
- *   F = K^T f,  f of covariance M'^-1:   cov(N F) = N K^T M'^-1 K N = N,   F of films likewise to be added
- *
- * f [points]: scratch. Otherwise as above. Source: Fixman, J. Chem. Phys. 69, 1527 (1978). */
-sd_status sd_bodies_draw_forces(sd_bodies_noise *s, const sd_bodies *A, const sd_bodies_blocks *blocks,
-                                const double *w, double tolerance, double *f, double *F,
-                                sd_noise_report *report);
-
 void sd_bodies_noise_free(sd_bodies_noise *s);
 
 SD_END_C

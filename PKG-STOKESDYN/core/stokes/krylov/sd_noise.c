@@ -201,14 +201,3 @@ sd_status sd_noise_velocities(sd_noise *s, const sd_noise_matrix *M, const doubl
   for (long j = 0; j < M->n; j++) y[j] = M->D[j] > 0.0 ? y[j] / sqrt(M->D[j]) : 0.0;
   return status;
 }
-
-sd_status sd_noise_forces(sd_noise *s, const sd_noise_matrix *M, const double *w, double tolerance,
-                          double *f, sd_noise_report *report)
-{
-  process q = {.s = s, .M = M};
-  const sd_status status = iterate(&q, w, tolerance, report);
-  if (status != SD_OK && status != SD_EMAXITER) return status;
-  combine(&q, q.c, f);
-  const sd_status last = take_half(M, 0, f, f);
-  return last == SD_OK ? status : last;
-}

@@ -3,7 +3,6 @@
  *
  *   A V = V T + ...,  V [m] orthonormal, the first w/|w|;  T tridiagonal;  p = T^1/2 e1,  c = T^-1/2 e1
  *   y = |w| P^-T V p      covariance M          velocities sqrt(2 kT/dt) y
- *   f = |w| P V c         covariance M^-1       forces sqrt(2 kT/dt) f
  *
  * After m products the covariance is diagonal in the eigenvectors of A, as M's own is, so that only
  * the variances of modes are wrong. Each mode counts by its own variance in
@@ -11,8 +10,8 @@
  *   e^2 = dc.T dc,  dc = c of this product less c of the last one
  *
  * the step in the energy norm, by which the process stops: the variance of the worst mode is then
- * wrong by 1 to 4 e (y, slow modes too large) or 4 to 13 e (f, slow modes too small). The usual rule,
- * the step of y in the Euclidean norm, is blind to slow modes: it leaves them 3 to 30 per cent off.
+ * wrong by 1 to 4 e (slow modes too large). The usual rule, the step of y in the Euclidean norm, is blind
+ * to slow modes: it leaves them 3 to 30 per cent off.
  *
  * Every vector is orthogonalised against all before it, twice, so that rounding copies no mode.
  * Source: Chow & Saad, SIAM J. Sci. Comput. 36, A588 (2014), for the method; the rule is our own. */
@@ -34,11 +33,11 @@ typedef struct {
   /* M, all of it */
   sd_apply *apply;
   void *ctx;
-  /* [n] D, about the inverse of M's diagonal; 0: M has no such row, y and f are 0 there */
+  /* [n] D, about the inverse of M's diagonal; 0: M has no such row, y is 0 there */
   const double *D;
   /* out = P v, also in its place, for a better P: P P^T about the inverse of M. D then only tells which
-   * rows there are. NULL: P = D^1/2. half_back: out = P^T v likewise; half_inverse, which
-   * sd_noise_velocities alone wants: out = P^-T v */
+   * rows there are. NULL: P = D^1/2. half_back: out = P^T v likewise; half_inverse:
+   * out = P^-T v */
   sd_apply *half, *half_back, *half_inverse;
   void *half_ctx;
   /* sum */
@@ -65,10 +64,6 @@ typedef struct {
  * y as it is then; SD_ENOTFINITE; SD_ENOMEMORY; that of apply. */
 sd_status sd_noise_velocities(sd_noise *s, const sd_noise_matrix *M, const double *w, double tolerance,
                               double *y, sd_noise_report *report);
-
-/* Likewise f [n] of covariance M^-1 */
-sd_status sd_noise_forces(sd_noise *s, const sd_noise_matrix *M, const double *w, double tolerance,
-                          double *f, sd_noise_report *report);
 
 void sd_noise_free(sd_noise *s);
 

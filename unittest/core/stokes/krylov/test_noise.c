@@ -78,14 +78,13 @@ static scene few(void)
   return cloud_flocs(5, 4, 2.0, 12.0, 0, 1.3, 17);
 }
 
-/* Whatever the tolerance, and so after any number of products: f.M f = w.w, as <f.M f> must be, and with P = 1 the total variance
- * y.y = w.M w. */
+/* Whatever the tolerance, and so after any number of products, with P = 1: the total variance y.y = w.M w */
 static void total_variance_is_exact_at_every_product(void **state)
 {
   (void) state;
   scene s = few();
   dense M = matrix_of(&s);
-  double *D = drags(&s), *w = calloc(4 * (size_t) M.n, sizeof(double)), *y = w + M.n, *f = y + M.n, *Mf = f + M.n;
+  double *w = calloc(3 * (size_t) M.n, sizeof(double)), *y = w + M.n, *Mw = y + M.n;
   double *ones = malloc(sizeof(double) * (size_t) M.n);
   for (int k = 0; k < M.n; k++) ones[k] = 0.4;
   draw_normals(M.n, 1, w);
@@ -93,34 +92,28 @@ static void total_variance_is_exact_at_every_product(void **state)
   int last = 0;
   for (double tolerance = 0.9; tolerance > 1e-9; tolerance *= 0.3) {
     sd_noise_report report;
-    const sd_noise_matrix by_drag = {.n = M.n, .apply = dense_apply, .ctx = &M, .D = D};
-    assert_int_equal(sd_noise_forces(&noise, &by_drag, w, tolerance, f, &report), SD_OK);
-    dense_apply(&M, f, Mf);
-    CHECK_NEAR(dot(M.n, f, Mf) / dot(M.n, w, w), 1.0, 1e-10);
+    const sd_noise_matrix plain = {.n = M.n, .apply = dense_apply, .ctx = &M, .D = ones};
+    assert_int_equal(sd_noise_velocities(&noise, &plain, w, tolerance, y, &report), SD_OK);
+    dense_apply(&M, w, Mw);
+    CHECK_NEAR(dot(M.n, y, y) / dot(M.n, w, Mw), 1.0, 1e-10);
     assert_true(report.products >= last);
     last = report.products;
-    sd_noise_matrix plain = by_drag;
-    plain.D = ones;
-    assert_int_equal(sd_noise_velocities(&noise, &plain, w, tolerance, y, &report), SD_OK);
-    dense_apply(&M, w, Mf);
-    CHECK_NEAR(dot(M.n, y, y) / dot(M.n, w, Mf), 1.0, 1e-10);
   }
   assert_true(last > 15);
   sd_noise_free(&noise);
   free(ones);
-  free(D);
   free(w);
   free(M.A);
   scene_free(&s);
 }
 
-/* With P = 1 the root is the symmetric one: applied twice it is M, and the other one undoes it. */
+/* With P = 1 the root is the symmetric one: applied twice it is M. */
 static void noise_of_noise_is_the_product(void **state)
 {
   (void) state;
   scene s = few();
   const int n = 3 * s.n;
-  double *w = calloc(6 * (size_t) n, sizeof(double)), *y = w + n, *yy = y + n, *Mw = yy + n, *f = Mw + n, *ones = f + n;
+  double *w = calloc(5 * (size_t) n, sizeof(double)), *y = w + n, *yy = y + n, *Mw = yy + n, *ones = Mw + n;
   for (int k = 0; k < n; k++) ones[k] = 1.0;
   draw_normals(n, 2, w);
   sd_noise noise = {0};
@@ -128,12 +121,8 @@ static void noise_of_noise_is_the_product(void **state)
   const sd_noise_matrix M = {.n = n, .apply = whole, .ctx = &s, .D = ones};
   assert_int_equal(sd_noise_velocities(&noise, &M, w, 1e-8, y, &report), SD_OK);
   assert_int_equal(sd_noise_velocities(&noise, &M, y, 1e-8, yy, &report), SD_OK);
-  assert_int_equal(sd_noise_forces(&noise, &M, y, 1e-8, f, &report), SD_OK);
   whole(&s, w, Mw);
-  for (int k = 0; k < n; k++) {
-    CHECK_NEAR(yy[k], Mw[k], 1e-6 * sqrt(dot(n, Mw, Mw) / n));
-    CHECK_NEAR(f[k], w[k], 1e-6);
-  }
+  for (int k = 0; k < n; k++) CHECK_NEAR(yy[k], Mw[k], 1e-6 * sqrt(dot(n, Mw, Mw) / n));
   sd_noise_free(&noise);
   free(w);
   scene_free(&s);
@@ -146,7 +135,7 @@ typedef struct {
   int products;
 } bias;
 
-static bias bias_of(scene *s, double tolerance, int draws, int forces)
+static bias bias_of(scene *s, double tolerance, int draws)
 {
   dense M = matrix_of(s);
   const int n = M.n, lwork = 40 * n;
@@ -164,12 +153,12 @@ static bias bias_of(scene *s, double tolerance, int draws, int forces)
   for (int k = 0; k < draws; k++) {
     sd_noise_report report;
     draw_normals(n, (uint64_t) k, w);
-    assert_int_equal((forces ? sd_noise_forces : sd_noise_velocities)(&noise, &of, w, tolerance, y, &report), SD_OK);
+    assert_int_equal(sd_noise_velocities(&noise, &of, w, tolerance, y, &report), SD_OK);
     if (report.products > b.products) b.products = report.products;
-    for (int p = 0; p < n; p++) y[p] *= forces ? 1.0 / sqrt(D[p]) : sqrt(D[p]);
+    for (int p = 0; p < n; p++) y[p] *= sqrt(D[p]);
     for (int m = 0; m < n; m++) {
       const double c = dot(n, A + (long) n * m, y), z = dot(n, A + (long) n * m, w);
-      sum[m] += (forces ? c * c * value[m] : c * c / value[m]) - z * z;
+      sum[m] += c * c / value[m] - z * z;
     }
   }
   for (int m = 0; m < n; m++) {
@@ -202,9 +191,9 @@ static scene chains(int count)
 }
 
 /* The scene is freed. */
-static bias bias_in(scene s, double tolerance, int draws, int forces)
+static bias bias_in(scene s, double tolerance, int draws)
 {
-  const bias b = bias_of(&s, tolerance, draws, forces);
+  const bias b = bias_of(&s, tolerance, draws);
   scene_free(&s);
   return b;
 }
@@ -212,17 +201,15 @@ static bias bias_in(scene s, double tolerance, int draws, int forces)
 static void every_mode_of_a_dense_cloud_is_right(void **state)
 {
   (void) state;
-  const bias y = bias_in(cloud_dense(100, 0.45, 1.0, 1.0, 1.3, 3), BY_DEFAULT, 60, 0);
+  const bias y = bias_in(cloud_dense(100, 0.45, 1.0, 1.0, 1.3, 3), BY_DEFAULT, 60);
   assert_true(fabs(y.worst) < 0.015);
   assert_true(y.products <= 20);
 }
 
-/* A third of the tolerance for forces, whose slow modes are the worst */
 static void every_mode_of_overlapping_chains_is_right(void **state)
 {
   (void) state;
-  assert_true(fabs(bias_in(chains(10), BY_DEFAULT, 60, 0).worst) < 0.015);
-  assert_true(fabs(bias_in(chains(10), 0.3 * BY_DEFAULT, 60, 1).worst) < 0.015);
+  assert_true(fabs(bias_in(chains(10), BY_DEFAULT, 60).worst) < 0.015);
 }
 
 /* What the mean of variances hides: so few products as the usual rule takes (a step of y of 1e-3) leave bonds a tenth and more too
@@ -230,7 +217,7 @@ static void every_mode_of_overlapping_chains_is_right(void **state)
 static void too_few_products_make_slow_modes_hot(void **state)
 {
   (void) state;
-  const bias b = bias_in(chains(10), 0.08, 60, 0);
+  const bias b = bias_in(chains(10), 0.08, 60);
   assert_true(b.worst > 0.1);
   assert_in_range(b.products, 10, 25);
 }
@@ -239,7 +226,7 @@ static void lone_spheres_take_one_product(void **state)
 {
   (void) state;
   const int n = 9;
-  double A[81] = {0.0}, D[9], w[9], y[9], f[9];
+  double A[81] = {0.0}, D[9], w[9], y[9];
   for (int k = 0; k < n; k++) {
     D[k] = k == 4 ? 0.0 : 1.5 + k / 3;
     A[(n + 1) * k] = k == 4 ? 0.0 : 1.0 / D[k];
@@ -251,11 +238,7 @@ static void lone_spheres_take_one_product(void **state)
   sd_noise_report report;
   assert_int_equal(sd_noise_velocities(&noise, &of, w, BY_DEFAULT, y, &report), SD_OK);
   assert_int_equal(report.products, 1);
-  assert_int_equal(sd_noise_forces(&noise, &of, w, BY_DEFAULT, f, &report), SD_OK);
-  for (int k = 0; k < n; k++) {
-    CHECK_NEAR(y[k], k == 4 ? 0.0 : w[k] / sqrt(D[k]), 1e-14);
-    CHECK_NEAR(f[k], w[k] * sqrt(D[k]), 1e-14);
-  }
+  for (int k = 0; k < n; k++) CHECK_NEAR(y[k], k == 4 ? 0.0 : w[k] / sqrt(D[k]), 1e-14);
   sd_noise_free(&noise);
 }
 
