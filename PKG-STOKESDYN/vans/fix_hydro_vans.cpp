@@ -14,12 +14,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
-
-static constexpr size_t MAX_CLASSES = 32;
 
 FixHydroVans::Columns::Columns(const VansSettings &set, const Resume &resume)
 {
@@ -91,39 +88,6 @@ void FixHydroVans::check_box() const
                      ", so that its area follows the grains: give the area of the stream");
 }
 
-/* One class for each radius, in the order of the lowest atom ID that has it. */
-void FixHydroVans::find_classes()
-{
-  if (set.has_grains() && set.class_radii.empty() && (set.classes || set.wants_pores())) {
-    struct First {
-      double radius;
-      tagint tag;
-    };
-    const int found = group->find(set.average.c_str()),
-              bit = found < 0 ? 1 : group->bitmask[found];
-    std::map<double, tagint> mine;
-    for (int i = 0; i < atom->nlocal && mine.size() <= MAX_CLASSES; i++) {
-      if (!(atom->mask[i] & bit) || !(atom->radius[i] > 0.0)) continue;
-      tagint &lowest = mine.emplace(atom->radius[i], atom->tag[i]).first->second;
-      lowest = std::min(lowest, atom->tag[i]);
-    }
-    std::vector<First> all;
-    for (const auto &entry : mine) all.push_back({entry.first, entry.second});
-    all = from_all(world, all);
-    std::sort(all.begin(), all.end(), [](const First &p, const First &q) { return p.tag < q.tag; });
-    std::vector<double> radii;
-    for (const First &each : all)
-      if (std::find(radii.begin(), radii.end(), each.radius) == radii.end()) radii.push_back(each.radius);
-    if (radii.size() > MAX_CLASSES && set.classes)
-      set.voice.fail("keyword classes: the grains have more than " + std::to_string(MAX_CLASSES) +
-                     " different radii; a class is one radius exactly");
-    if (radii.size() > MAX_CLASSES) radii.clear();    // pores: one class of the mean radius
-    if (!radii.empty()) stream.set_classes(radii);
-  }
-  size_array_cols = ARRAY_COLUMNS + (set.upflow ? 2 : 0);
-  if (set.classes) size_array_cols += SD_VANS_ROWS * (int) stream.class_radii.size();
-}
-
 /* What the keywords name must still be there. */
 void FixHydroVans::find_names()
 {
@@ -149,6 +113,9 @@ void FixHydroVans::init()
     set.voice.fail("run_style respa is not supported");
   check_box();
   find_names();
+  if (set.classes && set.averages() && stream.class_radii.empty())
+    set.voice.warn("keyword classes: the run begins without grains to average, so that it has no classes; they are "
+                   "made from the grains that there are when a run begins");
   if (!set.has_grains()) check_radius();
   if (set.solves()) tell_steps();
   if (set.couple == VansSettings::TWO) tell_sizes();
@@ -218,7 +185,7 @@ void FixHydroVans::setup(int vflag)
   if (last_step < 0) feel_pressure();
   set.law.dpdx = stream.felt;
   if (set.overlap_once && !set.averages()) count_overlaps();
-  if (set.averages() && !stream.averaged) {
+  if (set.averages() && !(stream.averaged && stream.classes_averaged)) {
     average();
     stream.profile_changed();
     if (set.couple == VansSettings::TWO) check_mesh();

@@ -48,6 +48,8 @@ class FixHydroVans : public RowsFix {
          TOTAL_DRAG, BED, MOMENTUM, TRANSIT, DRIVING, BOTTOM, WALLS, SURFACE, OTHERS, DISCHARGE,
          DRIVE, ELEVATION, VOLUME, MEAN_TRANSPORT, TRANSPORT_ERROR, MEAN_STRESS, STRESS_ERROR,
          WALL_SHARE, PRESSED, VECTOR_SIZE };
+  /* And of each class, behind them. */
+  enum { CLASS_RADIUS, CLASS_HEIGHT, CLASS_TRANSPORT, CLASS_NUMBERS };
 
   /* Per atom: force and velocity fluctuation; memo: what must follow the atom besides, a column
    * that no keyword asks for is not there. LOST: share of its volume that is another's too. */
@@ -113,6 +115,9 @@ class FixHydroVans : public RowsFix {
   void tell_sizes();
   void tell_waves();
   void find_classes();
+  void find_bins(int n, int average);
+  std::vector<double> different_radii(int average) const;
+  double of_class(int c, int number) const;
   void find_names();
 
   void select(int bit, bool not_in_group = false);

@@ -144,7 +144,7 @@ void FixHydroVans::average()
   std::vector<double> sums(total + MEANS, 0.0), all(total + MEANS);
   work.resize(3 * N);
   const sd_vans_averaging how = {set.point, (int) nclass, stream.class_radii.data(),
-                                 &sums[forces]};
+                                 &sums[forces], stream.bins()};
   const sd_vans_grains grains = this->grains();
   const int odd = sd_vans_average(&set.mesh, &set.law, &how, stream.U.data(),
                                   stream.hindrance.data(), &grains, sums.data(), work.data());

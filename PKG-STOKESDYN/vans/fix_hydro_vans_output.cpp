@@ -13,6 +13,7 @@ double FixHydroVans::compute_vector(int k)
 {
   const auto &ledger = stream.ledger;
   const double largest = stream.largest_stress();
+  if (k >= VECTOR_SIZE) return of_class((k - VECTOR_SIZE) / CLASS_NUMBERS, (k - VECTOR_SIZE) % CLASS_NUMBERS);
   if (k <= FORCE_Z || k == TOTAL_DRAG || k == OUTSIDE || k == PRESSED) sum_up();
   switch (k) {
     case FORCE_X:
@@ -53,6 +54,15 @@ double FixHydroVans::compute_vector(int k)
     case STRESS_ERROR: return steady(k);
   }
   return 0.0;
+}
+
+double FixHydroVans::of_class(int c, int number) const
+{
+  if ((size_t) c >= stream.class_radii.size()) return 0.0;
+  const double *profile = &stream.class_grain[(size_t) c * SD_VANS_ROWS * stream.ncell()];
+  if (number == CLASS_RADIUS) return stream.class_radii[c];
+  if (number == CLASS_TRANSPORT) return sd_vans_transport(&set.mesh, profile);
+  return set.mesh.z_ref + sd_vans_mean_height(&set.mesh, profile);
 }
 
 /* Means over the steady part of the run, and their errors. */
@@ -151,7 +161,7 @@ int FixHydroVans::modify_param(int narg, char **arg)
     set.check_solve(what, T, dt);
     find_names();
     read_variables();
-    if (set.averages() && !stream.averaged) average();
+    if (set.averages() && !(stream.averaged && stream.classes_averaged)) average();
     check_radius();
     solve_on_demand(T, dt);
   } else

@@ -115,6 +115,16 @@ void VansSettings::check_solve(const Voice &what, double T, double step) const
               " slices in every coupling would take most of a minute");
 }
 
+void VansSettings::take_classes(Keywords &in)
+{
+  classes = true;
+  if (in.take("yes")) return;
+  if (in.take("no"))
+    classes = false;
+  else
+    bins = (int) in.integer(1, 1000);
+}
+
 void VansSettings::take_class_radii(Keywords &in)
 {
   class_radii.resize(in.integer(1, 32));
@@ -231,7 +241,7 @@ void VansSettings::read(Keywords &in)
       {"wall_mixing", [&] { fluid.narrow = in.yes_no(); }},
       {"bed_mixing", [&] { fluid.bed_mixing = in.take("off") ? 0.0 : in.not_negative(); }},
       {"radius", [&] { radius = in.positive(); }},
-      {"classes", [&] { classes = in.yes_no(); }},
+      {"classes", [&] { take_classes(in); }},
       {"class_radii", [&] { take_class_radii(in); }},
       {"grains", [&] { point = in.choice({"extended", "point"}) == 1; }},
       {"felt", [&] { law.felt_by_volume = in.choice({"centre", "volume"}) == 1; }},
@@ -292,6 +302,9 @@ void VansSettings::check(const Keywords &in) const
   in.require(!fluid.held || reach > 0.0 || !in.given("pressure_gradient"),
              "keyword discharge: the pressure gradient follows from it, "
              "leave pressure_gradient out");
+  in.require(!bins || class_radii.empty(),
+             "keyword classes: with a number of classes they are bins of equal ratio, and class_radii has no "
+             "effect: leave one of the two out");
   in.require(!follows() || (couple == TWO && !yade()),
              "keyword surface: follow needs couple two and rules consistent");
   const bool walls = fluid.width > 0.0;

@@ -51,6 +51,8 @@ struct VansSettings {
   /* 0: mean of the grains */
   double radius = 0.0;
   bool classes = false;
+  /* of equal ratio; 0: a class for each radius, as long as these are few */
+  int bins = 0;
   /* empty: those of the grains */
   std::vector<double> class_radii;
   bool point = false;
@@ -94,6 +96,7 @@ struct VansSettings {
   std::string mesh_file, profile_file, given_file, convective_file, intensity_file;
   void read(Keywords &in);
   void take_mesh(Keywords &in);
+  void take_classes(Keywords &in);
   void take_class_radii(Keywords &in);
   void take_fluctuation(Keywords &in);
   void take_intensity(Keywords &in);

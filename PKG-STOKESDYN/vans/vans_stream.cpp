@@ -35,14 +35,23 @@ VansStream::VansStream(const VansSettings &settings) :
   take_given(set.given);
 }
 
-void VansStream::set_classes(const std::vector<double> &radii)
+/* Averages of classes that stay are kept; the means of bins are sums over ranks, whose last digit
+ * depends on these. */
+void VansStream::set_classes(const std::vector<double> &radii, const std::vector<double> &limits,
+                             const std::vector<double> &volumes)
 {
-  if (radii == class_radii && !class_grain.empty()) return;
   const size_t N = ncell(), profile = SD_VANS_ROWS * N;
+  const bool same = limits == class_limits && (!limits.empty() || radii == class_radii);
+  if (!same || class_grain.size() != profile * radii.size()) {
+    class_grain.assign(profile * radii.size(), 0.0);
+    classes_averaged = radii.empty();
+  }
   class_radii = radii;
-  class_grain.assign(profile * radii.size(), 0.0);
+  class_limits = limits;
+  class_volumes = volumes;
   fluid.nclass = (int) class_radii.size();
   fluid.class_radius = class_radii.data();
+  fluid.class_volume = volumes.empty() ? nullptr : class_volumes.data();
 }
 
 void VansStream::take_given(const std::vector<std::vector<double>> &columns)
@@ -138,7 +147,7 @@ void VansStream::take_averages(double area, const double *sums, const double *fo
   }
   phi_history.emplace_back(phi(), phi() + N);
   while ((int) phi_history.size() > set.bed_average) phi_history.pop_front();
-  averaged = true;
+  averaged = classes_averaged = true;
   sd_hindrance_of(set.law.drag, ncell(), phi(), set.law.exponent, hindrance.data());
 }
 
@@ -371,6 +380,8 @@ void VansStream::save(NamedState &state)
   state.put("density_known", density_known);
   state.put("radius", fluid.radius);
   state.put("class_radii", class_radii);
+  state.put("class_limits", class_limits);
+  state.put("class_volumes", class_volumes);
   state.put(set.voice.lmp->world, saved());
   std::vector<double> history;
   for (const auto &profile : phi_history)
@@ -411,8 +422,9 @@ void VansStream::load(const NamedState &state)
   averaged = state.get("averaged", 0.0) != 0.0;
   density_known = state.get("density_known", 0.0) != 0.0;
   if (set.radius == 0.0) fluid.radius = state.get("radius", 0.0);
-  set_classes(state.get("class_radii"));
+  set_classes(state.get("class_radii"), state.get("class_limits"), state.get("class_volumes"));
   state.get(set.voice.lmp->world, saved());
+  classes_averaged = true;
   load_surface(state);
   const size_t N = ncell();
   const auto history = state.get("phi_history");

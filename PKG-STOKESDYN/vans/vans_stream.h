@@ -31,6 +31,8 @@ class VansStream {
   /* profile of all grains, and one after the other those of the classes */
   std::vector<double> grain, class_grain;
   std::vector<double> class_radii;
+  /* of bins: their limits, one more, and the volume of the grains in each; empty: classes are radii */
+  std::vector<double> class_limits, class_volumes;
   /* [N] */
   std::vector<double> hindrance, b, length, nut, stress;
   /* [N] per volume of grains: force of the viscous stress, impulse of the drag that the last solve
@@ -53,6 +55,8 @@ class VansStream {
   sd_vans_series series = {};
   /* are there averages? */
   bool averaged = false;
+  /* also of the classes that there are now? A run may begin with others than the last one had. */
+  bool classes_averaged = true;
 
   /* Numbers that grow: momentum along x, from the first step on. */
   struct Ledger {
@@ -67,7 +71,9 @@ class VansStream {
   int ncell() const { return mesh.ncell; }
   double *phi() { return grain.data(); }
   double *row(int k) { return grain.data() + (size_t) k * mesh.ncell; }
-  void set_classes(const std::vector<double> &radii);
+  void set_classes(const std::vector<double> &radii, const std::vector<double> &limits = {},
+                   const std::vector<double> &volumes = {});
+  const double *bins() const { return class_limits.empty() ? nullptr : class_limits.data(); }
   /* Columns as read_given has them, or none. */
   void take_given(const std::vector<std::vector<double>> &columns);
   /* U or phi set from outside: hindrance, eddy viscosity and stress follow. */

@@ -16,6 +16,7 @@ create_atoms 1 single 0.004 0.004 0.004
 create_atoms 1 single 0.014 0.012 0.006
 create_atoms 1 single 0.005 0.013 0.018
 create_atoms 1 single 0.013 0.004 0.04
+region heap block 0 0.02 0 0.02 0.008 0.018
 {radii}
 velocity all set 0.1 0.01 -0.02
 {variables}
@@ -29,6 +30,11 @@ pair_coeff * *
 neighbor 0.001 bin
 timestep 1e-5
 thermo 100000"""
+# 40 more grains, and a size for each
+MANY = """create_atoms 1 random 40 4711 heap
+variable size atom random(0.001,0.004,5)
+set group all diameter v_size
+set group all density 2500"""
 SEED = Integer(lambda v: v >= 1, ["4711", "1"], ["0", "-1", "9223372036854775807"], odd=lambda v: v <= 0)
 BED = Or(auto=[], otherwise=[ANY])
 EQUAL = Field(lambda v: True, ["0", "0.3", "-0.1"], atom=False)
@@ -57,7 +63,7 @@ VANS = {
     "bed_average": [Integer(lambda v: v >= 1, ["1", "3"], ["0", "1000000"], odd=lambda v: v > 1e6)],
     "sublayer": [YES_NO], "viscosity": [Choice("constant", "einstein", "power")],
     "surface": [Or(free=[], speed=[EQUAL], follow=[positive("0.012")])], "pressure_gradient": [EQUAL],
-    "sidewall": [Or(off=[], otherwise=[positive("0.0065"), NOT_NEGATIVE])], "radius": [positive("0.003")], "classes": [YES_NO],
+    "sidewall": [Or(off=[], otherwise=[positive("0.0065"), NOT_NEGATIVE])], "radius": [positive("0.003")], "classes": [Or(yes=[], no=[], otherwise=[Integer(lambda v: 1 <= v <= 1000, ["1", "3", "40"], ["0", "1001", "2.5"], odd=lambda v: v == 1000)])],
     "class_radii": [Counted(32, positive("0.003", "0.002"))],
     "grains": [Choice("extended", "point")], "felt": [Choice("centre", "volume")], "overlap": [Choice("twice", "once")],
     "fluctuation": [Or(none=[], correlated=[SEED, BED], uncorrelated=[SEED, BED], depth=[SEED, BED],
@@ -97,6 +103,7 @@ def judge_vans(case, words, how):
     case.refuse_if(yade and (s("drag", "yade") != "yade" or s("hindrance") in ("richardson_zaki", "di_felice")), "drag")
     case.refuse_if(s("drag") in ("ergun", "gidaspow", "beetstra", "koch_hill") and "hindrance" in case.settings, "hindrance")
     case.refuse_if(s("upflow", "off") != "off" and (yade or couple in ("none", "fluid")), "upflow")
+    case.refuse_if(s("classes", "no") not in ("yes", "no") and "class_radii" in case.settings, "classes")
     held, walls = s("discharge", "off") != "off", s("sidewall", "off") != "off"
     deep = s("adjust") == "depth"
     case.refuse_if(held and (yade or couple in ("none", "one") or s("surface") == "speed" or "pressure_gradient" in case.settings and not deep), "discharge")
@@ -141,10 +148,12 @@ def judge_vans(case, words, how):
 
 def make_vans(case):
     case.style = "hydro/vans"
-    how = case.draw.choices(["usual", "no molecules", "no radius"], [80, 15, 5])[0]
+    how = case.draw.choices(["usual", "many sizes", "no molecules", "no radius"], [50, 30, 15, 5])[0]
     style = {"no molecules": "sphere", "no radius": "atomic"}.get(how, "hybrid sphere bond")
     radii = "mass 1 1" if how == "no radius" else "set group all diameter 0.006 density 2500"
-    if how == "usual":
+    if how == "many sizes":
+        radii = MANY
+    if how in ("usual", "many sizes"):
         radii += "\nmass 1 1\nset atom 1*2 mol 1"
     case.lines = GRAINS.format(variables=VARIABLES, style=style, radii=radii).split("\n")
     required = ["mesh", "fluid", "gravity"]

@@ -6,7 +6,7 @@ from relations_scene import Scene, until_settled
 OPTIONS = {
     "couple": ["two", "two", "one", "none"], "layers": [1, 2, 3],
     "turbulence": ["none", "li_sawamoto", "kz", "parabolic", "pore", "rousseau", "ni_capart", "pipe"],
-    "fluctuation": ["none", "none", "correlated", "uncorrelated", "depth", "langevin"], "classes": ["no", "yes"],
+    "fluctuation": ["none", "none", "correlated", "uncorrelated", "depth", "langevin"], "classes": ["no", "yes", "3", "many"], "sizes": ["two", "two", "many"],
     "drag": ["yade", "schiller_naumann", "brown_lawler", "ferguson_church"], "lift": ["off", "off", "0.2"],
     "walls": ["no", "no", "smooth", "rough"], "surface": ["free", "speed", "follow"],
     "drive": ["slope", "pressure", "time", "discharge", "depth"], "added_mass": ["off", "off", "0.4"],
@@ -25,6 +25,7 @@ def lawful(o, no):
     no(o["drive"] == "depth", surface="follow")
     no(o["turbulence"] == "none", bed_mixing="off")
     no(o["couple"] == "none", upflow="off", classes="no")
+    no(o["classes"] == "many", sizes="many", layers=3)
     no(o["couple"] == "none" and o["fluctuation"] in ("depth", "langevin"), fluctuation="correlated")
     no(o["fluctuation"] != "none" and o["upflow"] != "off", upflow="off")
     no(o["upflow"] != "off", added_mass="off")
@@ -34,7 +35,8 @@ def words_of(o):
     words = f"{o['period']} mesh 24 <L 0.0024> <at z 0> fluid <rho 1000> <eta 0.001> gravity <A 0.4905 0 -9.797> phi_max 0.61"
     words += "".join(f" {name} {o[name]}" for name in ("couple", "turbulence", "drag", "lift", "felt", "viscosity", "stream"))
     words += f" overlap {o['overlap']} average {o['average']} added_mass {o['added_mass']} solve <t 1e-3> <t 1e-4>"
-    words += " classes yes" * (o["classes"] == "yes") + f" bed_mixing {o['bed_mixing']}" * (o["bed_mixing"] != "off")
+    words += {"no": "", "yes": " classes yes", "3": " classes 3", "many": " classes yes"}[o["classes"]]
+    words += f" bed_mixing {o['bed_mixing']}" * (o["bed_mixing"] != "off")
     words += {"no": "", "smooth": " sidewall <L 0.03> 1",
               "rough": " sidewall <L 0.03> 1 wall_roughness <L 1e-3> wall_mixing yes"}[o["walls"]]
     words += {"free": "", "speed": " surface speed <V 0.7>", "follow": " surface follow <L 0.045>"}[o["surface"]]
@@ -58,7 +60,8 @@ def build(options, seed):
                 if layer:
                     x, v = [c + R.uniform(-0.0006, 0.0006) for c in x], [R.uniform(-0.1, 0.1) + 0.1 * layer * (k == 0) for k in range(3)]
                 small = layer and R.random() < 0.5
-                s.atom(x, v, 2 if layer else 1, diameter=0.0048 if small else 0.006, density=2500.0,
+                size = 0.003 + 0.003 * R.random() if layer and o["sizes"] == "many" else 0.0048 if small else 0.006
+                s.atom(x, v, 2 if layer else 1, diameter=size, density=2500.0,
                        molecule=i + 1 if layer == 1 and j < 2 else 0)
     s.head = ["units si", "atom_style hybrid sphere bond", "comm_modify vel yes"]
     s.make = ["boundary p p f", "region box block <block 0 0.03 0 0.03 0 0.08>", "create_box 2 box"]
@@ -75,6 +78,8 @@ def build(options, seed):
     s.globals = [("F", "f_vans[1] f_vans[2] f_vans[3]"), ("nu", "f_vans[4]"), ("V", "f_vans[5]"), ("P", "f_vans[6]"), ("1", "f_vans[7]"),
                  ("1", "f_vans[8]"), ("F", "f_vans[9]"), ("L", "f_vans[10]"), ("nu", "f_vans[18]"), ("A", "f_vans[19]")]
     columns = {2: "V", 3: "1", 7: "F", 8: "rate", 9: "nu", 10: "P"}
+    if o["classes"] in ("3", "many"):       # radius and transport rate of bins, and phi of one of them
+        s.globals += [("L", "f_vans[28]"), ("nu", "f_vans[30]"), ("L", "f_vans[34]"), ("nu", "f_vans[36]"), ("1", "f_vans[7][21]")]
     s.globals += [(kind, f"f_vans[{row}][{column}]") for row in (2, 4, 7, 12, 20) for column, kind in columns.items()]
     s.dt, s.steps, s.tolerance, s.floor = 1e-5, o["steps"], 1e-8, 1e-7
     s.length, s.spacing = 1e-4, 0.006

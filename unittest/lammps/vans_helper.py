@@ -158,8 +158,9 @@ fix move mobile nve/sphere
 """
 
 
-def bed_script(vans, every=20, group="mobile", layers=4, damp=0, processors="", seed=5):
-    """Fixed spheres on the bottom and layers of loose ones of two sizes above it, given a push; the stream as the keywords say."""
+def bed_script(vans, every=20, group="mobile", layers=4, damp=0, processors="", seed=5, spread=None):
+    """Fixed spheres on the bottom and layers of loose ones of two sizes above it, given a push; the stream as the keywords say. spread: each loose grain
+    has a size of its own instead, smaller by up to this part."""
     rng = np.random.default_rng(seed)
     lines, atom = [], 0
     d = 0.006
@@ -172,6 +173,8 @@ def bed_script(vans, every=20, group="mobile", layers=4, damp=0, processors="", 
                 if layer:
                     x, y, z = np.array([x, y, z]) + rng.uniform(-0.0006, 0.0006, 3)
                 diameter = d if layer == 0 or rng.random() < 0.5 else 0.8 * d
+                if layer and spread is not None:
+                    diameter = d * (1 - spread * rng.random())
                 v = rng.uniform(-0.1, 0.1, 3) + [0.1 * layer, 0, 0] if layer else np.zeros(3)
                 lines.append("create_atoms %d single %.17g %.17g %.17g units box" % (1 if layer == 0 else 2, x, y, z))
                 lines.append("set atom %d diameter %.17g density 2500 vx %.17g vy %.17g vz %.17g" % (atom, diameter, *v))

@@ -143,12 +143,32 @@ typedef struct {
   int point;
   /* size classes; 0: none */
   int nclass;
-  /* [nclass]; a grain belongs to the class of exactly its radius */
+  /* [nclass]; a grain belongs to the class of exactly its radius, or, with bins, of its bin */
   const double *class_radius;
   /* [2][N] out, added to: force of the drag along x and along z in each slice, of grains of any
    * sizes; NULL: not wanted */
   double *density;
+  /* [nclass+1] limits of bins, that rise; NULL: the classes are no bins */
+  const double *class_limit;
 } sd_vans_averaging;
+
+/* The class of radius a: the one of exactly this radius, since radii are names (a grain that has
+ * grown belongs to none: -1); with bins the one with limit_c <= a < limit_(c+1), where the first and
+ * the last have all that is smaller and larger. */
+int sd_vans_class_of(const sd_vans_averaging *how, double a);
+
+/* Limits [n+1] of n bins of equal ratio from radius lo to radius hi, lo (hi/lo)^(c/n), as sieves
+ * have them. 0 < lo <= hi. */
+void sd_vans_bins(double lo, double hi, int n, double *limit);
+
+/* Adds a^3 and a^2 of the grains to the sums [nclass][2] of their classes. */
+void sd_vans_class_sums(const sd_vans_averaging *how, const sd_vans_grains *grains, double *sums);
+
+/* Radius and volume [nclass] of bins from those sums: sum a^3 / sum a^2, Sauter's mean, with which
+ * phi/V_c spheres have the volume and the surface of the grains; of an empty bin its geometric
+ * middle and 0. */
+void sd_vans_class_means(int nclass, const double *limit, const double *sums, double *radius,
+                         double *volume);
 
 /* Adds grains to the sums [1 + nclass][N][ROWS]: of all, then of each class. The drag is that of
  * the law with hindrance (from the phi before this call) and U, 0 for a grain with its centre
@@ -222,6 +242,9 @@ typedef struct {
   /* size classes of the exchange term and of the pore length; 0: one class of that radius */
   int nclass;
   const double *class_radius;
+  /* [nclass] volume of the grains of each class, in the packed bed of rousseau; NULL: as many grains
+   * of each */
+  const double *class_volume;
   /* Yade's least slip in the exchange term, 1e-5 m/s, and longest life of an eddy, 10 s; for rules
    * yade only */
   double least_slip, longest_life;
@@ -423,6 +446,9 @@ void sd_vans_borne(const sd_vans_mesh *mesh, const double *force, double *pressu
 
 /* Volume of grains that passes a line across the stream, per width and time: sum phi vx dz. */
 double sd_vans_transport(const sd_vans_mesh *mesh, const double *profile);
+
+/* Where its grains are in the mean, above z_ref: sum phi z dz / sum phi dz; 0 without grains. */
+double sd_vans_mean_height(const sd_vans_mesh *mesh, const double *phi);
 
 /* The one of the largest size, with its sign. */
 double sd_vans_largest_stress(const sd_vans_mesh *mesh, const double *stress);

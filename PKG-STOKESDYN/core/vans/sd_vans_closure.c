@@ -65,17 +65,19 @@ static double top_of_bed(const sd_vans_mesh *mesh, const double *phi, double phi
 
 /* Van Driest: l = kappa zv (1 - exp(-zv+/26)) with zv the height that is left to the water, and
  * a length of pores that stays in the bed. zv+ = sqrt(zv U/nu) has the U of the slice below the
- * node in place of u_star. The pore length is that of all classes in equal numbers, packed to
- * phi_max. */
+ * node in place of u_star. The pore length is that of all classes in equal numbers, or in their
+ * volumes, packed to phi_max. */
 static void rousseau(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
                      const double *phi, double *length)
 {
   const double nu = fluid->eta / fluid->rho;
   double V = 0.0, S = 0.0;
   for (int c = 0; c < (fluid->nclass ? fluid->nclass : 1); c++) {
-    const double a = fluid->nclass ? fluid->class_radius[c] : fluid->radius;
-    V += 4.0 / 3.0 * SD_PI * a * a * a;
-    S += 4.0 * SD_PI * a * a;
+    const double a = fluid->nclass ? fluid->class_radius[c] : fluid->radius,
+                 of_one = 4.0 / 3.0 * SD_PI * a * a * a,
+                 number = fluid->class_volume ? fluid->class_volume[c] / of_one : 1.0;
+    V += number * of_one;
+    S += number * 4.0 * SD_PI * a * a;
   }
   const double pore = (1.0 - fluid->phi_max) / fluid->phi_max * V / S;
   double zv = 0.0;

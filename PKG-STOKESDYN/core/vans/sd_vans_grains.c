@@ -45,14 +45,6 @@ int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, dou
   return count;
 }
 
-/* Exactly, since radii are names here: a grain that has grown belongs to no class. */
-static int class_of(const sd_vans_averaging *how, double a)
-{
-  for (int c = 0; c < how->nclass; c++)
-    if (how->class_radius[c] == a) return c;
-  return -1;
-}
-
 static inline void add(double *sum, double V, const double *v, double drag)
 {
   sum[SD_VANS_PHI] += V;
@@ -124,7 +116,7 @@ int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
     if (how->density) add_density(how->density, N, a, first, count, V, drag, upward);
     if (how->nclass == 0) continue;
 
-    const int c = class_of(how, a);
+    const int c = sd_vans_class_of(how, a);
     if (c < 0) return i;
     double *class_sums = sums + (long) (1 + c) * N * SD_VANS_ROWS;
     const int p = sd_vans_slice_of(mesh, z), inside = p >= 0 && p < N;

@@ -16,6 +16,17 @@ double sd_vans_transport(const sd_vans_mesh *mesh, const double *profile)
   return q;
 }
 
+double sd_vans_mean_height(const sd_vans_mesh *mesh, const double *phi)
+{
+  double volume = 0.0, moment = 0.0;
+  for (int n = 0; n < mesh->ncell; n++) {
+    const double V = phi[n] * sd_vans_height(mesh, n);
+    volume += V;
+    moment += V * middle(mesh, n);
+  }
+  return volume > 0.0 ? moment / volume : 0.0;
+}
+
 double sd_vans_largest_stress(const sd_vans_mesh *mesh, const double *stress)
 {
   double largest = stress[0]; /* negative in a stream that flows the other way */

@@ -13,7 +13,7 @@ from system import environment
 EXAMPLES = pathlib.Path(__file__).resolve().parents[3] / "examples"
 QUICK = ["cfd_coupling", "clump_resistance", "dense_settling", "first_look", "fixed_bed", "landing", "notebook", "python_clump",
          "rolling", "slit_bead", "squeeze", "tumbling", "vans_drag", "vans_fluid", "vans_fluidised", "wall_shear"]
-BRIEF = ["active", "fibres", "hele_shaw", "magnetic", "roller_layer", "settling_layer", "shapes", "ship", "swimmers"]    # by their option --quick
+BRIEF = ["active", "fibres", "hele_shaw", "magnetic", "roller_layer", "settling_layer", "shapes", "ship", "swimmers", "vans_sorting"]    # by their option --quick
 
 
 # how a warning about a command of LAMMPS beside ours begins (common/neighbours.h)

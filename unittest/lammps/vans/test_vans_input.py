@@ -40,6 +40,10 @@ BAD = [
     (dict(solve="1e300 1e-300"), "keyword solve: the step 1e-300 is too short"),
     (dict(solve="1 1e-9"), "keyword solve: the step 1e-09 is too short for the period 1: 1e\\+09 steps of"),
     (dict(class_radii="2 0.001 0.001"), "keyword class_radii: '0.001' is given twice"),
+    (dict(classes="0"), "keyword classes: '0' must be >= 1"),
+    (dict(classes="1001"), "keyword classes: '1001' must be <= 1000"),
+    (dict(classes="2.5"), "keyword classes: '2.5' is not an integer"),
+    (dict(classes="5", class_radii="1 0.001"), "keyword classes: with a number of classes they are bins of equal ratio"),
     (dict(felt="surface"), "keyword felt: 'surface' is none of: centre, volume"),
     (dict(felt="volume", rules="yade"), "keyword felt is not available with rules yade"),
     (dict(felt="volume", grains="point"), "keyword felt has no effect with grains point"),
@@ -271,19 +275,6 @@ def test_unit_systems(units):
     s.do(command, "fix_modify h profile values " + " ".join("0.3" for _ in range(21)), "run 0")
     drag = 0.5 * 1000 * np.pi * 1e-6 * (0.44 * 0.3 + 24.4 * 0.001 / 1000 / 0.002) * 0.3
     assert np.allclose(s.atoms("f")[0], [drag, 0, 9.8 * 1000 * 4 / 3 * np.pi * 1e-9], rtol=1e-12)
-
-
-@pytest.mark.parametrize("radii", [32, 33])
-def test_more_classes_than_there_may_be(radii):
-    s = Scene()
-    a = 0.001 * (1.0 + 0.01 * np.arange(radii))
-    s.spheres([[0.01, 0.01, 0.004 * k] for k in range(radii)], np.zeros((radii, 3)), a)
-    if radii <= 32:
-        s.do(line(mesh="80 0.002 0", classes="yes"))
-        return
-    with pytest.raises(Exception, match="keyword classes: the grains have more than 32 different radii"):
-        s.do(line(mesh="80 0.002 0", classes="yes"))
-    s.do(line(mesh="80 0.002 0"), "run 0")    # nothing is left of the one that failed
 
 
 def test_two_dimensions_are_refused():
