@@ -19,6 +19,8 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
+static const char AXES[] = "xyz";
+
 // --- before a run --------------------------------------------------------------------------------
 
 static double side_of_box(const Domain *domain, const sd_wall &wall)
@@ -56,7 +58,7 @@ static void check_walls(const Voice &voice, const Boundary &boundary, int period
 {
   const Domain *domain = voice.lmp->domain;
   const int across = boundary.wall[0].axis;
-  const std::string axis(1, "xyz"[across]);
+  const std::string axis(1, AXES[across]);
   if (domain->periodicity[across])
     voice.fail("keyword wall: it needs boundary f, s or m across it, and " + axis +
                " is periodic: use " +
@@ -135,7 +137,7 @@ static void check_stream(const Voice &voice, const sd_wall &wall, const Ambient:
     const int d = (wall.axis + k) % 3;
     const Field &u = fluid.velocity[d];
     if (u.is_variable() || u.number() == 0.0) continue;
-    const std::string there = wall_name(wall) + ", and its component " + "xyz"[d] + " is '" +
+    const std::string there = wall_name(wall) + ", and its component " + AXES[d] + " is '" +
         text(u.number()) + "' there: ";
     if (k == 3)
       voice.fail("keyword fluid_velocity: nothing flows through the wall " + there +
@@ -180,7 +182,7 @@ void check_stream_at_walls(const Voice &voice, const Boundary &boundary, Ambient
     ambient.look_at_plane(wall.axis, wall.at, part);
     if (part[1] > RESTS)
       voice.at_step().fail("keyword fluid_velocity: nothing flows through the wall " + wall_name(wall) +
-                           ", and its component " + "xyz"[wall.axis] + " there is " + text(part[1]) +
+                           ", and its component " + AXES[wall.axis] + " there is " + text(part[1]) +
                            " of the largest velocity: give one that is 0 at the wall");
     if (films && part[0] > RESTS)
       voice.at_step().fail("keyword fluid_velocity: the fluid moves along the wall " + wall_name(wall) +
@@ -311,7 +313,7 @@ void refuse_net_force(const Voice &voice, const Scene &scene, const std::vector<
   for (int d = 0; d < 2; d++)
     if (std::fabs(sums[d]) > 1e-6 * sums[2 + d])
       voice.at_step().fail(
-          "the forces along " + std::string(1, "xyz"[along[d]]) + " add up to " + text(sums[d]) +
+          "the forces along " + std::string(1, AXES[along[d]]) + " add up to " + text(sums[d]) +
           ": in a box without walls that is periodic in two "
           "directions a net force along it shears the fluid above and below without "
           "end" +

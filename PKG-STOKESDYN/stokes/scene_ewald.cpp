@@ -155,7 +155,8 @@ void Scene::split_slab()
   const sd_ewald_sizes sizes = sizes_of_all(bounds[0]);
   const double smallest = bounds[1] > 0.0 ? 1.0 / bounds[1] : 0.0;
   if (bounds[0] > SD_SLAB_RATIO * (1.0 + 1e-9) * smallest)
-    voice.fail("keyword far_field: " + settings.boundary.summed() + ", the largest radius must be at most " +
+    voice.fail("keyword far_field: " + settings.boundary.where() +
+               ", periodic along it, the largest radius must be at most " +
                text(SD_SLAB_RATIO) + " times the smallest, and they are " +
                text(most) + " and " + text(least) +
                ": use group to select spheres");

@@ -116,6 +116,8 @@ def pair_words(o):
              "list": "cut_off_distance <L 3.1>"}[o["pairs"]]
     words += " relative_tolerance 1e-10 max_iter 900 algorithm 2 " + o["model"]
     words += {"no": "", "yes": " rigid_clumps yes", "auto": " rigid_clumps auto", "shell": " rigid_clumps yes shell 12"}[o["rigid"]]
+    # spheres that overlap by much, each turned as it comes, have no positive matrix with it
+    words += " one_body no" * (o["model"].startswith("multiblob") and o["clumps"] > 0 and o["rigid"] == "no")
     words += " lubrication yes" * (o["films"] == "yes") + " warm_start no" * (o["guess"] == "cold")
     words += " visc v_eta" if o["visc"] == "formula" else " visc <eta 1.3>"
     words += {"rest": "", "uniform": " fluid_velocity <V 0.3 0.1 -0.2>", "box": " fluid_velocity box"}.get(
@@ -182,7 +184,7 @@ def build(options, seed):
     s.other = "cut_off_distance inf visc <eta 2> relative_tolerance 1e-6 " + " fluid_velocity box" * (o["flow"] == "box")
     s.other += " add_force yes" * (o["motion"] == "forces inside")
     s.other += " rigid_clumps yes rotation yes" if o["clumps"] else " rotation yes" if turning else ""
-    if o["look"] == "stress" or slab:
+    if o["look"] == "stress" or slab or o["drive"] == "squirm":
         s.other = s.other.replace("rotation yes", "") + (" multiblob 42" if o["look"] == "stress" else " multiblob 12" if turning else "")
     s.other += " wall <side zlo -8.3>" * (o["space"] == "floor") + " wall <side zlo -8.3> <side zhi 9.0>" * (o["space"] in ("slit", "flux"))
     s.dt, s.steps, s.tolerance = 0.004, o["steps"], 2e-5 if o["noise"] == "yes" or o["films"] == "yes" else 2e-6

@@ -1,11 +1,14 @@
 """The rooms of the house: what a model may include, as its include path has it. The build tells it in compile_commands.json."""
 import json
 import os
+import pathlib
+import re
 import shlex
 import subprocess
 
 import pytest
 
+TOP = pathlib.Path(__file__).resolve().parents[3]
 BUILD = os.environ["LAMMPS_PLUGIN_PATH"]
 
 # a header of each room, and of the libraries
@@ -40,3 +43,12 @@ def test_a_room_sees_itself_and_what_is_below(target):
         if done.returncode == 0:
             seen.add(room)
     assert seen == SEES[target]
+
+
+def test_who_asks_the_boundary_stands_in_the_map():
+    stokes = TOP / "PKG-STOKESDYN" / "stokes"
+    asks = {path.stem for path in stokes.iterdir() if re.search(r"\bboundary\.(?!h\b)\w|[.&]boundary\b|\bboundary,", path.read_text())}
+    asks -= {"boundary", "boundary_checks"}
+    listed = re.search(r"\n\* \*\*Walls\.\*\*(.*?)\n\* ", (TOP / "PKG-STOKESDYN" / "README.md").read_text(), re.S).group(1)
+    assert "scene" in asks
+    assert not [name for name in sorted(asks) if f"`{name}`" not in listed]
