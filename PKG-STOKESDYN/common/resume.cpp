@@ -11,7 +11,7 @@ namespace StokesDyn {
 
 /* Hash (FNV-1a, by words) of atom and molecule ID, which commands may change where nothing moves:
  * the 53 bits that a double holds */
-static double name_of(const LAMMPS_NS::Atom *atom, int i)
+static double hash_of_ids(const LAMMPS_NS::Atom *atom, int i)
 {
   uint64_t h = 14695981039346656037u;
   for (LAMMPS_NS::tagint id : {atom->tag[i], atom->molecule ? atom->molecule[i] : 0})
@@ -24,7 +24,7 @@ void Resume::record(int i, double *row) const
   domain->unmap(atom->x[i], atom->image[i], row + X);
   memcpy(row + V, atom->v[i], 3 * sizeof(double));
   row[RADIUS] = atom->radius ? atom->radius[i] : 0.0;
-  row[NAME] = name_of(atom, i);
+  row[NAME] = hash_of_ids(atom, i);
   if (spins) memcpy(row + OMEGA, atom->omega[i], 3 * sizeof(double));
 }
 
@@ -35,7 +35,7 @@ bool Resume::placed(int i, const double *row) const
   domain->unmap(atom->x[i], atom->image[i], x);
   for (int k = 0; k < 3; k++)
     if (!(std::fabs(x[k] - row[X + k]) <= 1e-9 * radius)) return false;
-  return radius == row[RADIUS] && name_of(atom, i) == row[NAME];
+  return radius == row[RADIUS] && hash_of_ids(atom, i) == row[NAME];
 }
 
 static bool same_vector(const double *now, const double *then)

@@ -117,7 +117,7 @@ void warn_of_short_cutoff(const Voice &voice, const Scene &scene)
 
 // --- motion without inertia -----------------------------------------------------------------------
 
-static void refuse_settings(const Voice &voice, const StokesSettings &s)
+static void refuse_pair_settings(const Voice &voice, const StokesSettings &s)
 {
   const std::string pair = " of pair_style stokes_dynamics ";
   if (s.add_force)
@@ -145,7 +145,7 @@ void refuse_inertia(const Voice &voice, const Hydrodynamics &hydro)
     voice.fail("minimize cannot be used with it: motion without inertia has no minimiser");
   if (utils::strmatch(lmp->update->integrate_style, "^respa"))
     fail(lmp, voice.command + " does not support run_style respa");
-  refuse_settings(voice, hydro.settings);
+  refuse_pair_settings(voice, hydro.settings);
   for (const Fix *fix : fixes_of(lmp, "stokes_dynamics"))
     voice.fail(name_of(fix) + " cannot apply or report a force in this run (apply yes or no): use the "
                "output of this fix");
