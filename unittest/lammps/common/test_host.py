@@ -1,5 +1,6 @@
 """The one door to several ranks (host.py), and who is known to go through it (conftest.py)."""
 import os
+import subprocess
 
 import pytest
 
@@ -17,6 +18,15 @@ def test_mpich_has_as_many_as_cores(mpich):
     assert host.allowed(1, 2, 4) == [1, 2] and host.allowed((2, "on"), (4, "off")) == [(2, "on")] and host.at_most(3) == 2
     with pytest.raises(AssertionError, match="3 ranks where there may be 2"):
         host.mpirun(3)
+
+
+def test_ranks_of_mpich_wait_for_those_of_another_test(mpich, tmp_path, monkeypatch):
+    """Each of three programs writes that it has begun, and some time later that it has ended: none begins in between."""
+    monkeypatch.setattr(host.tempfile, "gettempdir", lambda: str(tmp_path))
+    script = f"echo begins >> {tmp_path}/said; sleep 0.2; echo ends >> {tmp_path}/said"
+    for process in [subprocess.Popen(host.one_at_a_time() + ["sh", "-c", script]) for _ in range(3)]:
+        assert process.wait(timeout=60) == 0
+    assert (tmp_path / "said").read_text().split() == ["begins", "ends"] * 3
 
 
 def test_without_mpi_there_is_one(monkeypatch):
