@@ -4,11 +4,14 @@
 #     runs COMMAND with its output in LOG and prints a line of NAME every ten seconds: how much is done, and how long the rest will
 #     take if it goes on at this rate. PERCENT is a function that prints the percentage done, or nothing where it cannot be known.
 #     Returns what COMMAND returns; an interrupt ends it too.
+#   full FOLDER    whether its disk has less than 20 MB left: a log on it cannot say so itself
 #   ninja_percent, apt_percent: such functions, for a log of ninja and for the file $apt_status, to which apt writes
 
 duration() {    # seconds, in words
   if [ "$1" -lt 90 ]; then echo "$1 s"; else echo "$((($1 + 30) / 60)) min"; fi
 }
+
+full() { [ "$(df -Pk "$1" | awk 'END { print $4 }')" -lt 20480 ]; }
 
 ninja_percent() {
   tail -c 4000 "$log" | tr '\r' '\n' | awk -F '[][/]' '/^\[[0-9]+\/[0-9]+\]/ { done = $2; all = $3 } END { if (all) printf "%d", 100 * done / all }'

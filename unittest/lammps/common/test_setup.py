@@ -1,6 +1,7 @@
 """What set-up and build say when something is missing, each with the way out; and nothing half made stays."""
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -31,6 +32,27 @@ def test_folders_that_cannot_be_written_are_named_with_another_choice(tmp_path):
     assert "you may not write there" in said and "set STOKESDYN_CACHE" in said
     said = run([TOP / "cmake" / "setup.sh"], tmp_path, STOKESDYN_BUILD=str(tmp_path / "file" / "build"))
     assert "you may not write into" in said and "set STOKESDYN_BUILD" in said
+
+
+# A small disk of memory, in a name space where we may mount it
+ALONE = ["unshare", "--map-root-user", "--mount"]
+
+
+def may_mount():
+    return bool(shutil.which("unshare")) and not subprocess.run([*ALONE, "mount", "-t", "tmpfs", "none", "/mnt"], capture_output=True).returncode
+
+
+@pytest.mark.nothing_to_test_if(not may_mount(), "this system does not let us mount a disk of memory")
+@pytest.mark.parametrize("command, room", [("provide_ready.sh", "600 MB"), ("provide_lammps.sh", "700 MB")])
+def test_a_full_disk_is_told_with_the_room_that_it_takes(tmp_path, command, room):
+    """Not a byte is left, not even for a log."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    script = (f"mount -t tmpfs -o size=1m none {disk} && mkdir {disk}/cache; cat /dev/zero > {disk}/zero; "
+              f"{TOP}/cmake/{command}; status=$?; echo left: $(ls {disk}/cache) and no more; exit $status")
+    said = run([*ALONE, "sh", "-c", script], tmp_path, STOKESDYN_CACHE=str(disk / "cache"))
+    assert f"{disk}/cache" in said and f"is full: make room for {room}" in said.replace(" (or of /tmp)", "") and "set STOKESDYN_CACHE" in said
+    assert "lammps-" not in re.search("left: (.*) and no more", said).group(1)
 
 
 @pytest.mark.parametrize("options, said", [
