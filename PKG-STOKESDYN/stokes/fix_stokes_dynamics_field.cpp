@@ -226,7 +226,7 @@ void FixStokesDynamicsField::add_sums(Hydrodynamics &hydro, const std::vector<do
   const sd_field_cloud all = measure_all(world, rows);
   static const sd_field_sum SUMS[] = {SD_FIELD_AUTO, SD_FIELD_DIRECT, SD_FIELD_SPLIT};
   const Scene::Settings &scene = hydro.settings.scene;
-  const sd_ewald_box box = Scene::box_of(domain);
+  const sd_ewald_box box = Scene::lattice_box(domain);
   double range;
   sd_status status = sd_field_plan(&tables, SUMS[scene.far_field], &box, scene.far_field_tolerance,
                                    &all, &g, &range);

@@ -25,7 +25,6 @@ static const double FEWEST = 200.0;
 double FlowInSlab::choose(const Voice &voice, const Scene &scene, const Piece &sources,
                           const std::vector<double> &x)
 {
-  const Domain *domain = voice.lmp->domain;
   const sd_slab_walls walls = scene.settings.boundary.slab_walls();
   double bounds[4] = {0.0, 0.0, -INFINITY, -INFINITY};    // largest, 1/smallest; heights
   for (double a : sources.a) {
@@ -49,10 +48,8 @@ double FlowInSlab::choose(const Voice &voice, const Scene &scene, const Piece &s
   MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, voice.lmp->world);
   sd_ewald_sizes sizes = {};
   sizes.all = {2.0 * sums[0], sums[1], sums[2], bounds[0]};
-  sd_ewald_box box = {};
+  sd_ewald_box box = Scene::lattice_box(voice.lmp->domain);
   box.periodic = 1;
-  std::copy_n(domain->boxlo, 3, box.origin);
-  std::copy_n(domain->prd, 3, box.edge);
   const sd_status status =
       sd_slab_choose(&walls, &box, -bounds[2], bounds[3], speck, &sizes,
                      AT_SPECKS * scene.settings.far_field_tolerance, &slab);

@@ -129,7 +129,8 @@ std::vector<double> Hydrodynamics::on_fluid(std::vector<double> *viscosity)
 void Hydrodynamics::pressure_gradient(double *gradient)
 {
   std::fill_n(gradient, 3, 0.0);
-  if (!settings.scene.boundary.no_flux) return;
+  const sd_slab_walls walls = settings.scene.boundary.slab_walls();
+  if (!walls.no_flux) return;
   std::vector<double> eta, x, a, F;
   const std::vector<double> rows = on_fluid(&eta);
   const size_t n = eta.size();
@@ -139,7 +140,6 @@ void Hydrodynamics::pressure_gradient(double *gradient)
     a.push_back(row[3]);
     for (int d = 0; d < 3; d++) F.push_back(eta[k] * row[4 + d]);
   }
-  const sd_slab_walls walls = settings.scene.boundary.slab_walls();
   sd_slab_add_pressure_gradient(&walls, domain->prd, (long) n, x.data(), a.data(), F.data(), gradient);
   MPI_Allreduce(MPI_IN_PLACE, gradient, 3, MPI_DOUBLE, MPI_SUM, world);
 }

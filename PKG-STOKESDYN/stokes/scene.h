@@ -165,7 +165,7 @@ class Scene : protected LAMMPS_NS::Pointers {
     return listed ? list().first[k] == list().first[k + 1] : !somebody_sees;
   }
   /* LAMMPS's, which is periodic in all directions or in none */
-  static sd_ewald_box box_of(const LAMMPS_NS::Domain *domain);
+  static sd_ewald_box lattice_box(const LAMMPS_NS::Domain *domain);
   /* View NEAR, but for a slab; else nullptr */
   const sd_ewald *splitting() const
   {

@@ -19,7 +19,7 @@ namespace StokesDyn {
 // Of spheres near those of a rank: 10 GB.
 static const double MOST_IMAGES = 1e8;
 
-sd_ewald_box Scene::box_of(const Domain *domain)
+sd_ewald_box Scene::lattice_box(const Domain *domain)
 {
   const Lattice lattice = Lattice::of(domain);
   sd_ewald_box box = {};
@@ -67,7 +67,7 @@ sd_ewald_sizes Scene::measure(sd_ewald_box &box) const
   MPI_Allreduce(MPI_IN_PLACE, most, 7, MPI_DOUBLE, MPI_MAX, world);
   const sd_ewald_sizes all = sizes_of_all(most[0]);
   if (periodic())
-    box = box_of(domain);
+    box = lattice_box(domain);
   else if (all.all.count > 0.0) {
     double lo[3], hi[3];
     for (int d = 0; d < 3; d++) {
@@ -160,10 +160,8 @@ void Scene::split_slab()
                text(SD_SLAB_RATIO) + " times the smallest, and they are " +
                text(most) + " and " + text(least) +
                ": use group to select spheres");
-  sd_ewald_box box = {};
+  sd_ewald_box box = lattice_box(domain);
   box.periodic = 1;
-  std::copy_n(domain->boxlo, 3, box.origin);
-  for (int d = 0; d < 3; d++) box.edge[d] = domain->boxhi[d] - domain->boxlo[d];
   const sd_status status = sd_slab_choose(&walls, &box, -bounds[2], bounds[3], smallest, &sizes,
                                           settings.far_field_tolerance, &slab);
   ewald = slab.ewald;

