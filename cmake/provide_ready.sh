@@ -31,7 +31,7 @@ if has_all; then printf '%s\n' "$root"; exit 0; fi
 
 mkdir -p "$cache" 2> /dev/null && [ -w "$cache" ] || fail "there is no LAMMPS of this version in $cache, and you may not write there. Ask its
   owner to run cmake/setup.sh, or set STOKESDYN_CACHE to a folder of your own"
-exec 9> "$cache/lock"
+exec 9> "$cache/ready.lock"      # LAMMPS from source may be made at the same time
 flock -n 9 || { echo "set-up: another run is making it, waiting" >&2; flock 9; }
 if has_all; then printf '%s\n' "$root"; exit 0; fi
 

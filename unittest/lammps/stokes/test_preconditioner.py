@@ -1,4 +1,5 @@
 """Preconditioners change how an answer is reached, never the answer."""
+import itertools
 import re
 
 import numpy as np
@@ -6,7 +7,7 @@ import pytest
 
 from host import allowed, at_most
 from suspensions import A, ALONG, ETA, EXACT, STOKES, flocs, lattice, loose_lattice
-from system import LammpsError, Spheres, dump_lines, input_lines, largest_difference, lmp, read_dump
+from system import LammpsError, Spheres, dump_lines, input_lines, largest_difference, lmp, lmp_in_turn, read_dump
 
 PAIR = "Pair style stokes_dynamics"
 MODES = {"all": "cut_off_distance inf", "clumps": "clumps_only yes", "taper": "cut_off_distance 12 taper wendland"}
@@ -64,12 +65,19 @@ LISTS = {"clumps": "clumps_only yes", "taper": "cut_off_distance 6 taper wendlan
 
 def forces_by_list(tmp_path, spheres, words, ranks, precondition, boundary="f f f", box=None):
     """Forces after one solve, and the iterations it took."""
-    lines = input_lines(spheres, f"{words} visc {ETA} {EXACT} precondition {precondition}", tmp_path / "data", boundary=boundary,
-                        box=box, comm="comm_modify cutoff 9")
-    lines += ["thermo_style custom step f_drag[4]"] + dump_lines(tmp_path / "dump") + ["run 0"]
-    log = lmp(tmp_path, lines, ranks=ranks).log
-    its = re.findall(r"^ +0 +([0-9]+) *$", log, re.M)
-    return read_dump(tmp_path / "dump")[-1][1][:, 6:9], int(its[-1])
+    return ways_by_list(tmp_path, spheres, words, ranks, [precondition], boundary, box)[0]
+
+
+def ways_by_list(tmp_path, spheres, words, ranks, preconditions, boundary="f f f", box=None):
+    """The same of each way to precondition, all in one start"""
+    inputs = []
+    for k, way in enumerate(preconditions):
+        lines = input_lines(spheres, f"{words} visc {ETA} {EXACT} precondition {way}", tmp_path / "data", boundary=boundary, box=box,
+                            comm="comm_modify cutoff 9")
+        inputs.append(lines + ["thermo_style custom step f_drag[4]"] + dump_lines(tmp_path / f"dump.{k}") + ["run 0"])
+    logs = lmp_in_turn(tmp_path, inputs, ranks)
+    return [(read_dump(tmp_path / f"dump.{k}")[-1][1][:, 6:9], int(re.findall(r"^ +0 +([0-9]+) *$", log, re.M)[-1]))
+            for k, log in enumerate(logs)]
 
 
 @pytest.mark.parametrize("mode", LISTS)
@@ -132,8 +140,7 @@ def test_auto_is_the_inverse_of_200_unknowns_and_not_of_more(tmp_path, rotation,
         x = np.vstack([cloud.x[:n - 4], cloud.x[:4] + 0.01])
         spheres = Spheres(x, rng.uniform(0.5, 1.0, n) * A, rng.normal(size=(n, 3)))
         words = f"cut_off_distance inf rotation {rotation}"
-        drag, iterations[n] = forces_by_list(tmp_path, spheres, words, ranks, "auto", box=[(-20.0, 40.0)] * 3)
-        expected, plain = forces_by_list(tmp_path, spheres, words, ranks, "none", box=[(-20.0, 40.0)] * 3)
+        (drag, iterations[n]), (expected, plain) = ways_by_list(tmp_path, spheres, words, ranks, ["auto", "none"], box=[(-20.0, 40.0)] * 3)
         assert largest_difference(drag, expected) < 1e-9 and plain > 30
     assert iterations[few] <= 2 and 5 < iterations[few + 1] < 30
 
@@ -199,18 +206,17 @@ def test_auto_is_nothing_for_few_spheres_that_go_on_to_a_loose_tolerance(simulat
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("mode", LISTS)
 def test_auto_is_the_blocks_where_spheres_see_by_list(tmp_path, mode, ranks):
-    its, residual = {}, {}
-    for precondition in ("none", "clump", "auto"):
-        for warm in ("no", "yes"):
-            spheres = flocs(30, 10, 16.0, spread=1.5)
-            spheres.v *= 0.01
-            words = f"{LISTS[mode]} visc {ETA} algorithm 2 relative_tolerance 1e-4 precondition {precondition} warm_start {warm}"
-            lines = input_lines(spheres, words, tmp_path / "data", box=[(-20.0, 40.0)] * 3, dt=1e-3, density=1e4,
-                                comm="comm_modify cutoff 9")
-            lines += ["fix move all nve", "thermo 1", "thermo_style custom step f_drag[4] f_drag[5]", "run 15"]
-            log = lmp(tmp_path, lines, ranks=ranks).log
-            rows = re.findall(r"^ +[0-9]+ +([0-9]+) +([-+.e0-9]+) *$", log, re.M)
-            its[precondition, warm], residual[precondition, warm] = [int(n) for n, _ in rows], [float(r) for _, r in rows]
+    ways, inputs, its, residual = list(itertools.product(("none", "clump", "auto"), ("no", "yes"))), [], {}, {}
+    spheres = flocs(30, 10, 16.0, spread=1.5)
+    spheres.v *= 0.01
+    for precondition, warm in ways:
+        words = f"{LISTS[mode]} visc {ETA} algorithm 2 relative_tolerance 1e-4 precondition {precondition} warm_start {warm}"
+        lines = input_lines(spheres, words, tmp_path / "data", box=[(-20.0, 40.0)] * 3, dt=1e-3, density=1e4, comm="comm_modify cutoff 9")
+        inputs.append(lines + ["fix move all nve", "thermo 1", "thermo_style custom step f_drag[4] f_drag[5]", "run 15"])
+    for way, log in zip(ways, lmp_in_turn(tmp_path, inputs, ranks)):
+        rows = re.findall(r"^ +[0-9]+ +([0-9]+) +([-+.e0-9]+) *$", log, re.M)
+        assert len(rows) == 16
+        its[way], residual[way] = [int(n) for n, _ in rows], [float(r) for _, r in rows]
     assert its["auto", "no"] == its["clump", "no"] and max(its["clump", "no"]) < 0.8 * min(its["none", "no"])
     assert its["auto", "yes"] == its["clump", "yes"] and sum(its["clump", "yes"]) <= sum(its["none", "yes"])
     if mode == "clumps":        # the blocks are the inverse where they were made, and one iteration of theirs leaves rounding

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from model import forces, same_clump
-from system import Spheres, dump_lines, input_lines, lmp, read_dump
+from system import Spheres, dump_lines, input_lines, lmp, lmp_in_turn, read_dump
 from test_rigid_clumps import SOLVED, WIDE, many, rotation_matrix
 from test_rotation import CLUSTERS, resistance
 
@@ -260,12 +260,10 @@ def bending(tmp_path, spheres):
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_auto_run_cut_in_pieces_is_the_same_run(tmp_path, ranks):
     spheres = flexible(3)
-    columns = "xu yu zu vx vy vz f_drag[1]"
-    frames, shapes = [], []
-    for runs in (["run 40"], ["run 20"] * 2, ["run 10"] * 4):
-        shapes.append(lmp(tmp_path, bending(tmp_path, spheres) + dump_lines(tmp_path / "dump", every=40, columns=columns) + runs,
-                          ranks=ranks).log.count("Rigid clumps, shape"))
-        frames.append(read_dump(tmp_path / "dump")[-1])
+    inputs = [bending(tmp_path, spheres) + dump_lines(tmp_path / f"dump.{pieces}", every=40, columns="xu yu zu vx vy vz f_drag[1]")
+              + [f"run {40 // pieces}"] * pieces for pieces in (1, 2, 4)]
+    shapes = [log.count("Rigid clumps, shape") for log in lmp_in_turn(tmp_path, inputs, ranks)]
+    frames = [read_dump(tmp_path / f"dump.{pieces}")[-1] for pieces in (1, 2, 4)]
     assert [step for step, _ in frames] == [40, 40, 40]
     for _, rows in frames[1:]:
         assert np.abs(rows - frames[0][1]).max() < 1e-10 * np.abs(frames[0][1]).max()
