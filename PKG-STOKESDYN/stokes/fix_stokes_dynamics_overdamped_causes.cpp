@@ -1,0 +1,76 @@
+/* Of fix stokes_dynamics/overdamped: do velocities of the step before still count, where a run begins? They do
+ * if spheres stand as they did, and what their velocities follow from is the same. */
+#include "fix_stokes_dynamics_overdamped.h"
+
+#include "sd_hash.h"
+
+#include "atom.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+/* Does the run begin where, and as, the last one ended? Then the velocities of before still count. */
+bool FixStokesDynamicsOverdamped::goes_on(const Hydrodynamics &hydro) const
+{
+  int moved = last.step != update->ntimestep || !hydro.memory->box_left_as_is();
+  for (int i : hydro.ambient.who())
+    if (!hydro.memory->placed_as_left(i)) moved = 1;
+  return !largest_of_all(world, moved);
+}
+
+/* Fingerprints of force, torque, fluid and viscosity: where spheres stand as they did, their velocities
+ * follow from these. */
+void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double *causes) const
+{
+  const int width = hydro.rotation() ? 6 : 3;
+  double sums[CAUSES] = {0.0}, fluid[6], of_box[3], given[6], pushed[6];
+  sd_squirmer_stroke stroke;
+  for (int i : hydro.ambient.who()) {
+    const uint64_t tag = atom->tag[i];
+    const double eta = hydro.ambient.viscosity(i);
+    hydro.ambient.fluid(i, fluid);
+    if (hydro.ambient.jumps()) {    // LAMMPS may have made an image of it since
+      hydro.ambient.box_motion().at(atom->x[i], of_box);
+      for (int d = 0; d < 3; d++) fluid[d] -= of_box[d];
+      sd_hash_add_row(tag, hydro.ambient.box_motion().gradient, 9, sums + 4);
+    }
+    load_on(i, pushed);
+    sd_hash_add_row(tag, pushed, 3, sums);
+    if (atom->torque_flag) sd_hash_add_row(tag, pushed + 3, 3, sums + 2);
+    sd_hash_add_row(tag, fluid, width, sums + 4);
+    sd_hash_add_row(tag, &eta, 1, sums + 6);
+    const double kind = any_given() ? given_velocity(i, given) : SD_BODY_FREE;
+    if (kind != SD_BODY_FREE) sd_hash_add_row(tag, given, 6, sums + 8);
+    sd_hash_add_row(tag, &kind, 1, sums + KINDS);
+    if (squirmers.stroke(i, stroke)) {
+      const double row[6] = {stroke.e[0], stroke.e[1], stroke.e[2], stroke.B1, stroke.B2, stroke.beta};
+      sd_hash_add_row(tag, row, 6, sums + 8);
+    }
+  }
+  MPI_Allreduce(sums, causes, CAUSES, MPI_DOUBLE, MPI_SUM, world);
+}
+
+/* Are there as many atoms as in the step of the last velocities, and do they follow from the same? */
+bool FixStokesDynamicsOverdamped::causes_stand(const Hydrodynamics &hydro) const
+{
+  double now[CAUSES];
+  find_causes(hydro, now);
+  bool same = last.atoms == atom->natoms;
+  for (int k = 0; k < CAUSES; k += 2)
+    same = same && fabs(now[k] - last.causes[k]) <= 1e-8 * std::max(now[k + 1], last.causes[k + 1]);
+  return same;
+}
+
+/* Spheres that are held, pinned or spun since now, or no longer (a dynamic group), jump to another
+ * velocity: on the line through both those that are pinned would leave their place. */
+void FixStokesDynamicsOverdamped::forget_before_change(const double *causes)
+{
+  const double *now = causes + KINDS, *then = last.causes + KINDS;
+  if (fabs(now[0] - then[0]) <= 1e-8 * std::max(now[1], then[1])) return;
+  before.clear();
+  load.clear();
+}
