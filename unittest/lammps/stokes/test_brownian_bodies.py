@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from brownian import A, END, ETA, KT, SHORT, TIGHT, UNIT, check_covariance, check_pieces, check_ranks, check_same, end, in_a_plane, noise, script, steps_of
-from system import Spheres
+from system import Spheres, input_lines, lmp
 
 INF = f"cut_off_distance inf visc {ETA} relative_tolerance 1e-6"
 TRIO = A * np.array([(0, 0, 0), (2.1, 0, 0), (0.4, 2.2, 0.6)])
@@ -51,6 +51,21 @@ def test_step_in_a_periodic_box_has_the_covariance_of_the_mobility(simulation):
     make = lambda: simulation(Spheres(x % 3.2, A), f"{INF} multiblob 12 lubrication yes far_field_tolerance 1e-4", fix=False, dt=SHORT,
                               boundary="p p p", box=[(0.0, 3.2)] * 3)
     check_step(make, 3, SPHERES, 350)
+
+
+NOT_POSITIVE = "the near part of the periodic sum has a negative mode"
+
+
+def test_a_near_part_that_is_not_positive_gives_way_to_the_whole_matrix(simulation, tmp_path):
+    """Spheres that overlap by half; it is said once."""
+    x, box = np.array([(1, 2, 1), (1, 2, 1)]) + np.outer((0, 1.145), (0.5**0.5, 0, 0.5**0.5)), dict(boundary="p p p", box=[(0.0, 5.0)] * 3)
+    words = "cut_off_distance inf visc 1 multiblob 12 relative_tolerance 1e-8 far_field_tolerance 1e-6"
+    check_step(lambda: simulation(Spheres(x), words, fix=False, dt=SHORT, **box), 2, np.eye(6), 350, "noise_tolerance 1e-6")
+    said = []
+    for distance in (1.0, 2.0):
+        lines = input_lines(Spheres((x - x[0]) * distance + x[0]), words, str(tmp_path / "data"), fix=False, dt=SHORT, **box)
+        said.append(lmp(tmp_path, lines + ["fix move all stokes_dynamics/overdamped temperature 0.8 7 noise_tolerance 1e-6", "run 5"]).log.count(NOT_POSITIVE))
+    assert said == [1, 0]
 
 
 def test_held_spheres_stay_and_the_others_feel_it(simulation):

@@ -151,6 +151,24 @@ def test_flips_of_the_box_change_nothing(simulation, style):
     assert np.abs(up_to_images(other - first, H)).max() < 1e-6
 
 
+def test_noise_that_knows_no_waves_does_not_know_the_faces(simulation):
+    """Spheres that overlap so that the near part is not positive, and the noise is that of the whole matrix: by the same random numbers of the
+    points, wherever the faces are and whichever edges are taken for the lattice (the box flips in the third step)."""
+    side, x, dt, kT = 5.0, np.array([(2.0, 2.0, 2.0), (2.0, 2.0, 2.0)]) + np.outer((0, 1.155), (0.5**0.5, 0, 0.5**0.5)), 0.02, 1e-5
+
+    def ends(shift, flip="flip yes", rate=1.0):
+        sim = sheared(simulation, Spheres((x + shift) % side), "far_field_tolerance 1e-8 multiblob 12 relative_tolerance 1e-10 max_iter 400", side, rate, dt,
+                      "noise_tolerance 1e-8", kT=kT, deform=flip, tilt=2.4)
+        sim.run(5)
+        return sim.x, edges(sim)[0]
+
+    (first, H), (shifted, _), (tall, _) = ends(0.0), ends(np.array([1.3, 2.1, 2.6])), ends(0.0, "flip no")
+    still = x @ shear(1.0, 5 * dt).T
+    relative = lambda x: up_to_images(x - x[0], H)[1]
+    assert H[0, 1] < 0 and np.linalg.norm(relative(first) - relative(still)) > 1e-4    # which noise makes
+    assert np.abs(relative(shifted) - relative(first)).max() < 1e-8 and np.abs(relative(tall) - relative(first)).max() < 1e-8
+
+
 @pytest.mark.parametrize("style", [POINTS, SHELLS, CLUMPS], ids=["points", "shells", "clumps"])
 def test_without_noise_midpoint_is_of_second_order_in_shear(simulation, style):
     ends = []
