@@ -17,10 +17,11 @@ from vans_runs import D, SCALE, by_second, error, keep, lmp, profiles  # noqa: E
 # slope, depth over d, beginning of the mean, what Yade gave for a bed made the same way (mean and its error, from blocks of 1 s)
 CASES = {"a": (0.05, 10, 8, (0.579, 0.007), (0.2578, 0.0010), (1.666, 0.002)), "b": (0.08, 9, 7, (1.563, 0.026), (0.3426, 0.0025), (1.862, 0.003))}
 
-# the README's means, and how far two runs of this length may be apart
+# the README's means, of the second slope over five beds, and how far two runs of this length may be apart: there three times the scatter between beds
 FOUND = {"a": {"q*": 0.577, "Shields number": 0.2557, "surface velocity [m/s]": 1.661},
-         "b": {"q*": 1.502, "Shields number": 0.3441, "surface velocity [m/s]": 1.852}}
-TOLERANCE = {"q*": 0.06, "Shields number": 0.006, "surface velocity [m/s]": 0.015}
+         "b": {"q*": 1.511, "Shields number": 0.3412, "surface velocity [m/s]": 1.847}}
+TOLERANCE = {"a": {"q*": 0.06, "Shields number": 0.006, "surface velocity [m/s]": 0.015},
+             "b": {"q*": 0.18, "Shields number": 0.009, "surface velocity [m/s]": 0.035}}
 
 
 def blocks(t, values, begin):
@@ -61,7 +62,7 @@ def main():
         for what, column, factor, peer in (("q*", 1, 1 / SCALE, yade[0]), ("Shields number", 2, 1, yade[1]), ("surface velocity [m/s]", 4, 1, yade[2])):
             mean, scatter, spread = blocks(t, series[:, column] * factor, begin)
             print(f"  slope {slope}: {what:24s} {mean:.4f} +- {spread:.4f} (scatter in time {scatter:.4f});  Yade {peer[0]} +- {peer[1]}")
-            c.near(f"slope {slope}: {what}", mean, FOUND[name][what], TOLERANCE[what])
+            c.near(f"slope {slope}: {what}", mean, FOUND[name][what], TOLERANCE[name][what])
         axes[0].plot(t, series[:, 1] / SCALE, lw=0.6, color=f"C{k}", alpha=0.8, label=f"slope {slope}")
         axes[0].axhline(yade[0][0], color=f"C{k}", ls="--", lw=1)
         profile = profiles(os.path.join(directory, f"profiles.{name}"), 0.5)

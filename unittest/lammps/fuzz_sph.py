@@ -1,6 +1,6 @@
 """Scenes, grammar and rules of pair_style sph/artVisc/tensCorr and its fixes, written from their pages (for fuzz.py)."""
 from fuzz_grammar import (ANY, BAD, COUNT, NOT_NEGATIVE, ODD, POSITIVE, VARIABLES, YES_NO, Choice, Field, Maybe, Name, Number, NumberOr,
-                          decimal, positive, write)
+                          Or, decimal, positive, write)
 
 WATER = """units si
 atom_style sph
@@ -277,3 +277,37 @@ def make_sph_check(case):
     water(case, check="fix limit all check/timestep/sph " + " ".join(words))
     if not case.judge(words, {"warn": [], "stop": []}, begin):
         case.faults += ["form", "N", "fraction"]
+
+
+# 8 grains (type 3) in the water
+WET = BULK.replace("atom_style sph", "atom_style hybrid sph sphere").replace("create_box 2 box", "create_box 3 box").replace(
+    "mass * 0.001", "mass * 0.001\ncreate_atoms 3 random 8 4711 box\nset type 3 diameter {diameter} density 2650\nset type 1*2 mass 0.001\n"
+    "group grains type 3\ngroup sph type 1 2").replace("set group all sph/rho 1001", "set group sph sph/rho 1001\ncomm_modify vel yes")
+OF_BED = ["ergun", "gidaspow", "beetstra", "koch_hill"]
+GRAINS = {"viscosity": [positive("1e-3")], "drag": [Choice("yade", "schiller_naumann", "brown_lawler", "ferguson_church", *OF_BED)],
+          "hindrance": [Or(richardson_zaki=[], di_felice=[], otherwise=[NOT_NEGATIVE])], "fall_diameter": [positive("0.7", "1", "1.3")],
+          "displace": [YES_NO], "own_flow": [YES_NO]}
+
+
+def make_sph_grains(case):
+    case.style, draw = "sph/grains", case.draw
+    diameter, wet = draw.choice(["0.005"] * 6 + ["0.0065", "0.0066", "0.02"]), draw.random() < 0.9
+    group, volume = draw.choice(["grains"] * 8 + ["nobody", "all", "sph"]), draw.choice(["yes"] * 9 + ["no"])
+    words = case.damaged(case.words_of(GRAINS, few=3))
+    water(case, WET.format(diameter=diameter), grains=f"fix drag {group} sph/grains " + " ".join(words),
+          pair="pair_style hybrid/overlay sph/artVisc/tensCorr wendland 0.013 " + ("viscosity 1e-3" if wet else "artVisc 0.1 0 1.7e-6") + " zero 0.01",
+          coeff="pair_coeff * * zero", more="pair_coeff 1*2 1*2 sph/artVisc/tensCorr c 20",
+          eos="fix eos sph sph/pressure Tait 57142.9 1000 7", density=f"fix density sph sph/density/continuity delta 0.1 volume {volume}",
+          move="fix move sph nve/sph", roll="fix roll grains nve/sphere")
+    case.lines.append(case.lines.pop(case.tried))       # the pair style first
+    case.tried = len(case.lines) - 1
+    case.extreme |= violent(words)
+    if not case.judge(words, GRAINS):
+        return
+    case.refuse_if(case.value("drag") in OF_BED and "hindrance" in case.settings, "hindrance")
+    case.refuse_if(group in ("all", "sph"), "group")
+    case.refuse_if(not wet and "viscosity" not in case.settings, "viscosity")
+    case.refuse_if(volume == "no", "volume")
+    case.refuse_if(float(diameter) > 0.0065 and group == "grains", "smoothing length")
+    if group == "nobody":
+        case.says(ODD, "")

@@ -54,7 +54,7 @@ class Scene:
                 mu = frame.vector("1", a["mu"])
                 words.append("dipole {!r} {!r} {!r}".format(*map(float, mu)))
             if "rho" in a:
-                words.append(f"sph/rho <{a['kind']} {a['rho']!r}>")
+                words.append(f"sph/rho <{a['kind']} {a['rho']!r}>" + f" mass <m {a.get('mass')!r}>" * ("mass" in a))
             if words:
                 lines.append(f"set atom {new} " + " ".join(words))
         return [frame.write(line) for line in lines]
@@ -71,7 +71,8 @@ class Scene:
         if hybrid == "after":
             styles = styles + [zero]
         first = "hybrid" if len(styles) == 1 else "hybrid/overlay"
-        return [f"pair_style {first} " + " ".join(f"{n} {w}" for n, w, _ in styles)] + [f"pair_coeff * * {n} {c}" for n, _, c in styles]
+        coefficients = [f"pair_coeff {types} {n} {words}" for n, _, c in styles for types, words in ([("* *", c)] if isinstance(c, str) else c)]
+        return [f"pair_style {first} " + " ".join(f"{n} {w}" for n, w, _ in styles)] + coefficients
 
     def output(self):
         names = " ".join(words for _, words in self.columns)

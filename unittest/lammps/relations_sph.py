@@ -11,6 +11,7 @@ OPTIONS = {
     "viscosity": ["no", "central", "laplacian"], "rheology": ["no", "no", "bingham", "carreau"], "filter": ["no", "no", "yes"],
     "state": ["Tait", "Tait", "tension no", "relativ", "absolut"],
     "wall": ["at rest", "slip", "suction no", "moving", "own"], "plane": ["no", "no", "plane", "region"], "gravity": ["no", "yes"],
+    "grains": ["no", "no", "yes"],
     "look": ["nothing", "energy", "probe", "virial", "height"], "skin": [0.3, 0.15], "steps": [2, 5, 9],
 }
 WALLED = ("tank", "column", "channel", "body")
@@ -39,6 +40,10 @@ def lawful(o, no):
     no(o["look"] == "height" and (o["space"] not in ("tank", "column") or o["gravity"] == "no"), look="probe")
     no(o["viscosity"] == "no", rheology="no")
     no(o["space"] == "body", gravity="yes")
+    # grains smaller than h
+    no(o["grains"] == "yes", dim=3, scheme="delta" if o["scheme"] in ("plain", "correction", "summation") else o["scheme"], volume="yes", fluids=1,
+       rheology="no", plane="no", look="nothing", wall="at rest", space="full" if o["space"] == "full" else "tank",
+       viscosity="laplacian" if o["viscosity"] == "laplacian" else "central")
     no(o["space"] == "body" and o["look"] == "virial", look="energy")     # that of fix rigid depends on where the origin is
 
 
@@ -88,9 +93,18 @@ def box_of(o):
     return lo, hi, each
 
 
+def add_grains(s, o, R):
+    """Type 5, apart from each other and from the surface, not at rest."""
+    size = size_of(o)
+    for cell in product(range(1, size[0] - 1, 2), range(1, size[1] - 1, 2), range(1, size[2] - 2, 2)):
+        if R.random() < 0.6:
+            s.atom([c + R.uniform(0.3, 0.7) for c in cell], [R.uniform(-0.2, 0.2) for _ in range(3)], 5, diameter=R.uniform(0.3, 0.65), density=2.65)
+
+
 def build(options, seed):
     o = lawful(options)
     flat, R = o["dim"] == 2, random.Random(f"water {seed}")
+    sph = {"mass": 1.0} if o["grains"] == "yes" else {}
     s = Scene("sph 2-D" if flat else "sph", o, seed)
     ends = o["space"] == "ends"
     for cell, kind in kinds_of_cells(o).items():
@@ -100,18 +114,23 @@ def build(options, seed):
         v = [R.uniform(-0.05, 0.05) * fluid + 4.0 * (ends and k == 0) for k in range(3)]
         if flat:
             x[2] = v[2] = 0.0
-        s.atom(x, v, kind, rho=1.0 + R.uniform(-0.005, 0.005) * fluid, kind="rho2" if flat else "rho")
+        s.atom(x, v, kind, rho=1.0 + R.uniform(-0.005, 0.005) * fluid, kind="rho2" if flat else "rho", **sph)
+    if o["grains"] == "yes":
+        add_grains(s, o, R)
     commands(s, o, "2" if flat else "", 1 if flat else 2, *box_of(o))
     return s
 
 
 def commands(s, o, d, up, lo, hi, each):
     flat, walled = bool(d), o["space"] in WALLED
-    s.head = ["units lj", f"dimension {o['dim']}", "atom_style sph"]
+    grains = o["grains"] == "yes"
+    s.head = ["units lj", f"dimension {o['dim']}", "atom_style hybrid sph sphere" if grains else "atom_style sph"]
+    s.head += ["comm_modify vel yes"] * grains
     spans = " ".join(f"{a!r} {b!r}" for a, b in zip(lo, hi))
-    s.make = [f"boundary <each {' '.join(each)}>", f"region box block <block {spans}>", "create_box 4 box"]
+    s.make = [f"boundary <each {' '.join(each)}>", f"region box block <block {spans}>", f"create_box {5 if grains else 4} box"]
     s.after = ["mass * <m 1.0>"]
-    s.groups = ["group fluid type 1 4", "group wall type 2 3", "group first type 1 2 3", "group second type 4"]
+    s.groups = ["group grains type 5", "group moves type 1 4 5"] * grains
+    s.groups += ["group fluid type 1 4", "group wall type 2 3", "group first type 1 2 3", "group second type 4"]
     s.define = [f"neighbor <L {o['skin']}> bin", "neigh_modify delay 0 every 1 check yes"]
     shifts = o["scheme"] in ("shift", "correction")
     words = f"{o['kernel']} <L 1.3>" + " artVisc 0.1 0.0 <area 0.01>" * (o["artVisc"] == "yes")
@@ -120,21 +139,26 @@ def commands(s, o, d, up, lo, hi, each):
     words += {"bingham": f" rheology bingham <P{d} 0.02> <eta{d} 0.5>",
               "carreau": f" rheology carreau <t 2.0> 0.4 <eta{d} 0.5>"}.get(o["rheology"], "")
     words += {"shift": " shift yes", "correction": " correction yes"}.get(o["scheme"], "")
-    s.pair = [("sph/artVisc/tensCorr", words, "c <V 10>" + " deltap <L 1.0>" * shifts)]
+    coefficients = "c <V 10>" + " deltap <L 1.0>" * shifts
+    s.pair = [("sph/artVisc/tensCorr", words, coefficients)]
+    if grains:
+        s.pair = [("soft", "<L 0.6>", [("* *", "<E 0.0>"), ("5 5", "<E 0.5>")]), ("sph/artVisc/tensCorr", words, [("1*4 1*4", coefficients)])]
     state = {"Tait": f"Tait <P{d} 14.2857> <rho{d} 1.0> 7", "relativ": f"relativ <V2 100> <rho{d} 1.0>", "absolut": "absolut <V 10>",
              "tension no": f"Tait <P{d} 14.2857> <rho{d} 1.0> 7 tension no"}[o["state"]]
     pull = [0.0, 0.0, 0.0]
     pull[up] = -0.1 if o["gravity"] == "yes" else 0.0
     weight = "<A {} {} {}>".format(*pull)
     direction = "<1 {} {} {}>".format(*[p / 0.1 for p in pull])
-    s.fixes = [f"fix p {'first' if o['fluids'] == 2 else 'all'} sph/pressure {state}"]
+    particles = "sph" if grains else "all"
+    s.groups += ["group sph type 1 2 3 4"] * grains
+    s.fixes = [f"fix p {'first' if o['fluids'] == 2 else particles} sph/pressure {state}"]
     if o["fluids"] == 2:
         s.fixes.append(f"fix p2 second sph/pressure {state}")
     rate = "" if o["scheme"] == "plain" else " delta 0.1"
     s.fixes.append("fix d all sph/density/summation" if o["scheme"] == "summation" else
-                   "fix d all sph/density/continuity" + rate + " volume yes" * (o["volume"] == "yes"))
+                   f"fix d {particles} sph/density/continuity" + rate + " volume yes" * (o["volume"] == "yes"))
     s.fixes += ["fix filter fluid sph/density/corr shepard every 2"] * (o["filter"] == "yes")
-    s.fixes += [f"fix g fluid gravity <A 0.1> vector {direction}"] * (o["gravity"] == "yes")
+    s.fixes += [f"fix g {'moves' if grains else 'fluid'} gravity <A 0.1> vector {direction}"] * (o["gravity"] == "yes")
     if walled:
         s.fixes.append("fix w wall wall/adami/sph" + f" gravity {weight}" * (o["gravity"] == "yes")
                        + {"slip": " slip yes", "suction no": " suction no", "own": " own_acceleration yes"}.get(o["wall"], ""))
@@ -153,11 +177,14 @@ def commands(s, o, d, up, lo, hi, each):
         s.define.append(f"region room block <block INF INF {'-0.6 INF INF INF' if flat else 'INF INF -0.6 INF'}>")
         s.fixes.append("fix plane fluid wall/region/sph room <L 0.6> <F 1.0>")
     s.fixes.append("fix move fluid nve/sph")
+    s.fixes += ["fix roll grains nve/sphere", "fix couple grains sph/grains drag beetstra"] * grains
     s.fixes += ["fix flat all enforce2d"] * flat
     s.fixes.append("compute rho all sph/rho/atom")
     look(s, o, d, up)
     s.columns = [("p", "xu yu zu"), ("V", "vx vy vz"), ("rho" + d, "c_rho"), ("P" + d, "f_p")]
     s.columns += [("drho" + d, "f_d")] * (o["scheme"] != "summation")
+    s.columns += [("1", "f_couple[1]"), ("F", "f_couple[2] f_couple[3] f_couple[4]")] * grains
+    s.globals += [("F", "f_couple[1] f_couple[2] f_couple[3]"), ("1", "f_couple[4]")] * grains
     s.dt, s.steps, s.tolerance = 0.01, o["steps"], 1e-8
 
 
