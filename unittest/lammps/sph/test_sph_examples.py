@@ -11,10 +11,11 @@ from system import environment
 EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "examples")
 
 
-@pytest.mark.parametrize("name", ["channel_flow", "drops", "liggghts", "river_bump", "sph_order", "still_water", "taylor_green"])
+@pytest.mark.parametrize("name", ["channel_flow", "dam_break_bed", "drops", "grain_cloud", "grains_in_water", "liggghts", "river_bump", "sph_order",
+                                  "still_water", "taylor_green"])
 def test_figures_hold(name):
     done = subprocess.run([sys.executable, os.path.join(EXAMPLES, name, "run.py"), "--quick"], env=environment(), capture_output=True,
-                          text=True, timeout=300)
+                          text=True, timeout=600)
     assert done.returncode == 0 and "\nok " in done.stdout and "MISSED" not in done.stdout, done.stdout + done.stderr
 
 
