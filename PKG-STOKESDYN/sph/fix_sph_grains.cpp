@@ -274,11 +274,12 @@ void FixSphGrains::find_fractions()
   for (int i = 0; i < atom->nlocal; i++)
     if (all[i] != 0.0 || rows.has(i)) *rows.give(i) = all[i];
   recall();
-  check_fractions(mean_of(phi, 1));
+  mean_phi = mean_of(phi, 1);
+  check_fractions();
   if (update->setupflag) displace();
 }
 
-void FixSphGrains::check_fractions(const std::vector<double> &mean)
+void FixSphGrains::check_fractions()
 {
   largest = 0.0;
   const auto beside_wall = [this](size_t j) {
@@ -287,11 +288,11 @@ void FixSphGrains::check_fractions(const std::vector<double> &mean)
     });
   };
   for (size_t j = 0; j < grains.size(); j++) {
-    largest = std::max(largest, mean[j]);
+    largest = std::max(largest, mean_phi[j]);
     const double most = update->setupflag && !beside_wall(j) ? MOST : CLOSE;
-    if (mean[j] > most)
+    if (mean_phi[j] > most)
       voice.at_step().fail_one("the volume fraction of grains around atom " +
-                               std::to_string(atom->tag[grains[j]]) + " is " + text(mean[j]) +
+                               std::to_string(atom->tag[grains[j]]) + " is " + text(mean_phi[j]) +
                                "; above " + text(most) +
                                " no drag law holds, and spheres "
                                "would overlap: use stiffer contacts, or fewer or smaller grains");
@@ -412,9 +413,9 @@ void FixSphGrains::drags(const std::vector<double> &reaction, std::vector<double
       v_next[3 * j + d] = v[3 * j + d] + dt * (atom->f[grains[j]][d] + F[3 * j + d]) / M[j];
     }
 
-  const std::vector<double> u = mean_of(now, 3), u_next = mean_of(next, 3), mean = mean_of(phi, 1),
+  const std::vector<double> u = mean_of(now, 3), u_next = mean_of(next, 3),
                             rho = mean_of(std::vector<double>(atom->rho, atom->rho + all), 1);
-  sd_sph_grain_phi(n, mean.data(), own.data(), at_grains.data());
+  sd_sph_grain_phi(n, mean_phi.data(), own.data(), at_grains.data());
   sd_sph_grain_drag(&law, n, a.data(), u.data(), v.data(), rho.data(), at_grains.data(), wet.data(),
                     k.data());
   for (int j = 0; j < n; j++) shown.give(grains[j])[0] = at_grains[j];
@@ -455,7 +456,7 @@ std::vector<double> FixSphGrains::mean_of(const std::vector<double> &of_atoms, i
   const sd_sph_around list = around();
   const std::vector<double> there = at_points(of_atoms, columns);
   std::vector<double> mean(columns * grains.size() + 1);
-  sd_sph_grain_means(&list, weight.data(), columns, there.data(), mean.data());
+  (columns == 3 ? sd_sph_grain_vector_means : sd_sph_grain_means)(&list, weight.data(), there.data(), mean.data());
   return mean;
 }
 

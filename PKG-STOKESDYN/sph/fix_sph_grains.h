@@ -61,7 +61,7 @@ class FixSphGrains : public SphFix {
   LAMMPS_NS::bigint list_of = -1;
   // the particles that fill the cells, as atoms; the grains of this rank
   std::vector<int> points, grains, first, particle, walls;
-  std::vector<double> phi, moved, places, grain_places, volume, weight, wet, own;
+  std::vector<double> phi, mean_phi, moved, places, grain_places, volume, weight, wet, own;
   // radius, volume, mass: HUGE_VAL of those that forces do not move
   std::vector<double> a, V, M;
   double total[3] = {0.0, 0.0, 0.0}, largest = 0.0;
@@ -73,7 +73,7 @@ class FixSphGrains : public SphFix {
   void displace();
   void list_particles();
   void look_at_places();
-  void check_fractions(const std::vector<double> &mean);
+  void check_fractions();
   std::vector<double> at_points(const std::vector<double> &of_atoms, int columns) const;
   std::vector<double> at_atoms(const std::vector<double> &of_points, int columns) const;
   std::vector<double> mean_of(const std::vector<double> &of_atoms, int columns) const;

@@ -123,4 +123,5 @@ def main():
                                                            ratios[-1], error))
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -142,16 +142,32 @@ void sd_sph_grain_flux(const sd_sph_around *list, const double *V, const double 
     }
 }
 
-void sd_sph_grain_means(const sd_sph_around *list, const double *weight, int columns,
-                        const double *rows, double *means)
+/* Sums that stay in registers: this is most of what grains cost. */
+void sd_sph_grain_vector_means(const sd_sph_around *list, const double *weight,
+                               const double *vectors, double *means)
 {
-  memset(means, 0, sizeof(double) * columns * (size_t) list->n);
   for (int j = 0; j < list->n; j++) {
-    double *mean = means + columns * (size_t) j;
+    double x = 0.0, y = 0.0, z = 0.0;
     for (int p = list->first[j]; p < list->first[j + 1]; p++) {
-      const double *row = rows + columns * (size_t) list->particle[p];
-      for (int c = 0; c < columns; c++) mean[c] += weight[p] * row[c];
+      const double *u = vectors + 3 * (size_t) list->particle[p], w = weight[p];
+      x += w * u[0];
+      y += w * u[1];
+      z += w * u[2];
     }
+    means[3 * (size_t) j] = x;
+    means[3 * (size_t) j + 1] = y;
+    means[3 * (size_t) j + 2] = z;
+  }
+}
+
+void sd_sph_grain_means(const sd_sph_around *list, const double *weight, const double *numbers,
+                        double *means)
+{
+  for (int j = 0; j < list->n; j++) {
+    double sum = 0.0;
+    for (int p = list->first[j]; p < list->first[j + 1]; p++)
+      sum += weight[p] * numbers[list->particle[p]];
+    means[j] = sum;
   }
 }
 

@@ -89,9 +89,12 @@ void sd_sph_grain_fractions(const sd_sph_around *list, const double *V, const do
 void sd_sph_grain_flux(const sd_sph_around *list, const double *V, const double *volume,
                        const double *weight, const double *wet, const double *slip, double *flux);
 
-/* Means of the water at each grain, means [columns n] out: sum_a w_aj of rows [columns m]. */
-void sd_sph_grain_means(const sd_sph_around *list, const double *weight, int columns,
-                        const double *rows, double *means);
+/* Means of the water at each grain, means [n] out: sum_a w_aj of numbers [m]; and [3n] of vectors
+ * [3m]. */
+void sd_sph_grain_means(const sd_sph_around *list, const double *weight, const double *numbers,
+                        double *means);
+void sd_sph_grain_vector_means(const sd_sph_around *list, const double *weight,
+                               const double *vectors, double *means);
 
 /* The grain's own share of phi at its place: sum_a w_aj t_j V_j w_aj / V_a. own [n] */
 void sd_sph_grain_shares(const sd_sph_around *list, const double *V, const double *volume,
