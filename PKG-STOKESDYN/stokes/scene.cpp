@@ -231,6 +231,7 @@ void Scene::place_points(int n_all_or_copies, sd_mobility_scene &scene)
   scene.n = shells->first_of_rows()[size()];
   scene.n_all = shells->first_of_all()[n_all_or_copies];
   scene.spheres = shells->all();
+  scene.groups = shells->groups();
   if (view() == SD_VIEW_ALL) return;
   halo_of_points = halo.refined(shells->first_of_all());
   scene.world.refresh = [](void *ctx, const double *rows, double *copies, int width) {

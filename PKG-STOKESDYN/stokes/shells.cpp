@@ -108,9 +108,24 @@ void Shells::find(int n, const double *a, Places &places) const
   }
 }
 
+static const double UNITY[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+/* By radius, which says how many points there are, as long as there are forms left */
+void Shells::find_forms(const sd_multiblob_spheres &s)
+{
+  std::vector<double> radii;
+  forms.assign(s.n, -1);
+  for (int k = 0; k < s.n; k++) {
+    const double *row = s.turn + 9 * (size_t) k;
+    if (!sd_multiblob_is_whole(&s, k) || !std::equal(UNITY, UNITY + 9, row)) continue;
+    const size_t form = std::find(radii.begin(), radii.end(), s.a[k]) - radii.begin();
+    if (form == radii.size() && form < SD_GROUP_FORMS) radii.push_back(s.a[k]);
+    if (form < radii.size()) forms[k] = (int) form;
+  }
+}
+
 void Shells::free_rows(int n, const double *a)
 {
-  static const double unity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   find(n, a, of_rows);
   turn.resize(9 * (size_t) n + 9);
   mask.resize(n + 1);
@@ -118,7 +133,7 @@ void Shells::free_rows(int n, const double *a)
   for (const sd_multiblob &model : models) whole.push_back(sd_multiblob_whole(&model));
   for (int k = 0; k < n; k++) {
     mask[k] = whole[of_rows.kind[k]];
-    std::copy_n(unity, 9, &turn[9 * (size_t) k]);
+    std::copy_n(UNITY, 9, &turn[9 * (size_t) k]);
   }
 }
 
@@ -152,6 +167,7 @@ void Shells::expand(int n, const std::vector<double> &rows, const sd_spheres &sp
   const sd_multiblob_spheres s = {spheres.x,    spheres.a, turns.data(),
                                   there.data(), n,         of_all.kind.data(),
                                   of_all.first.data()};
+  find_forms(s);
   const size_t points = of_all.first[n];
   x.resize(3 * points + 3);
   b.resize(points + 1);

@@ -100,6 +100,8 @@ class Shells : protected LAMMPS_NS::Pointers {
   void expand(int n, const std::vector<double> &rows, const sd_spheres &spheres);
   sd_spheres all() const { return {x.data(), b.data(), w.data()}; }
   const std::vector<int> &first_of_all() const { return of_all.first; }
+  /* Those of a sphere are a group; free spheres of one radius have one form, and turned ones none. */
+  sd_groups groups() const { return {(int) forms.size(), of_all.first.data(), forms.data()}; }
 
   double memory_usage() const;
 
@@ -116,6 +118,7 @@ class Shells : protected LAMMPS_NS::Pointers {
   struct Places {
     std::vector<int> kind, first;
   } of_rows, of_all;
+  std::vector<int> forms;
   std::vector<double> turn;
   std::vector<sd_multiblob_mask> mask;
   std::vector<double> x, b, w;
@@ -126,6 +129,7 @@ class Shells : protected LAMMPS_NS::Pointers {
   void add_model(int n, bool half);
   void warn_of_alike(double largest) const;
   void find(int n, const double *a, Places &places) const;
+  void find_forms(const sd_multiblob_spheres &s);
 };
 
 }    // namespace StokesDyn

@@ -192,12 +192,19 @@ INLINE int keep(int *list, const int j[LANES], unsigned hits)
 #endif
 }
 
-/* Of the numbers j, j + 1 ... in the same way */
+/* Of the numbers j, j + 1 ... in the same way; not by way of memory, whose eight stores a vector would
+ * have to wait for */
 INLINE int keep_next(int *list, int j, unsigned hits)
 {
+#ifdef SD_AVX512
+  const __m256i all_j = _mm256_add_epi32(_mm256_set1_epi32(j), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+  _mm256_storeu_si256((__m256i *) list, _mm256_maskz_compress_epi32((__mmask8) hits, all_j));
+  return __builtin_popcount(hits);
+#else
   int next[LANES];
   for (int k = 0; k < LANES; k++) next[k] = j + k;
   return keep(list, next, hits);
+#endif
 }
 
 /* --- roots --- */

@@ -107,10 +107,16 @@ typedef struct {
 typedef long sd_near_search(const double *centre, long stride, const int *ranges, int count,
                             const double *x, double distance2, int *list);
 
+/* Blocks of groups: most points, and the numbers of a row, filled up with zeros to whole vectors of
+ * every set */
+enum { SD_GROUP_POINTS = 12, SD_GROUP_ROW = 40 };
+
 struct sd_ewald_kernels {
   sd_near_search *search;
   void (*near_part)(const sd_near_part *p);
   void (*image_part)(const sd_image_part *p);
+  /* u [36] += scale B F [36] of a symmetric block B [36][SD_GROUP_ROW] */
+  void (*own_block)(const double *B, double scale, const double *F, double *u);
   void (*spread)(const sd_spreading *s);
   void (*interpolate)(const sd_spreading *s);
   /* one row along z of the three transforms, u = B (f - k (k.f)/k^2): B [half], k [3] at its

@@ -3,6 +3,7 @@
 #include "sd_tensor_lanes.h"
 
 #include "sd_ewald_near_kernel.h"
+#include "sd_ewald_own_kernel.h"
 #include "sd_ewald_spread_kernel.h"
 #include "sd_image_pair_kernel.h"
 #include "sd_image_row_kernel.h"
@@ -39,5 +40,5 @@ static void open_row(double *const *f, const double *K, double sx, double sy, in
 }
 
 const struct sd_ewald_kernels SD_KERNELS(sd_ewald) = {
-    search, near_part, image_part, spread, interpolate, periodic_row, open_row,
+    search, near_part, image_part, own_block, spread, interpolate, periodic_row, open_row,
     image_rows};

@@ -40,11 +40,13 @@ typedef struct {
   const sd_slab *slab;
 } sd_mobility_how;
 
-/* The spheres of one solve. All that it points to outlives the solve. */
+/* The spheres of one solve. All that it points to outlives the solve, but for the groups, which view NEAR
+ * may make use of: of n_all spheres, and none has both some of the n and ghosts. */
 typedef struct {
   sd_mobility_how how;
   int n, n_all;
   sd_spheres spheres;
+  sd_groups groups;
   const sd_pairs *pairs;
   sd_world world;
 } sd_mobility_scene;

@@ -64,6 +64,14 @@ static sd_status take_spheres(ewald *e, const sd_mobility_scene *s)
   return SD_OK;
 }
 
+/* Where spheres are kept off a wall, none is like another. */
+static sd_groups groups_of(const ewald *e, const sd_mobility_scene *s)
+{
+  sd_groups groups = s->groups;
+  if (e->ewald.images.wall.sign) groups.form = NULL;
+  return groups;
+}
+
 static int all_finite(const sd_mobility_scene *s)
 {
   for (int i = 0; i < s->n_all; i++)
@@ -87,7 +95,9 @@ static sd_status me_place(void *state, const sd_mobility_scene *s)
   int brick[6] = {0};
   if (status == SD_OK && !all_finite(s)) status = SD_ENOTFINITE;
   if (status == SD_OK) status = take_spheres(e, s);
-  if (status == SD_OK) status = sd_ewald_pairs_place(&e->pairs, &here->spheres, s->n, s->n_all);
+  const sd_groups groups = groups_of(e, s);
+  if (status == SD_OK)
+    status = sd_ewald_pairs_place(&e->pairs, &here->spheres, &groups, s->n, s->n_all);
   if (status == SD_OK && e->ewald.images.wall.sign)
     status = sd_ewald_image_pairs_place(&e->image_pairs, &e->ewald.images.wall, &here->spheres, s->n,
                                         s->n_all);

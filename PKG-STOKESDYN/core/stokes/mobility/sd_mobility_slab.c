@@ -100,11 +100,14 @@ static sd_status place(void *state, const sd_mobility_scene *scene)
   s->waves.grid.world = scene->world;
   if (!(s->slab.ewald.count > 0.0)) return status;
   int brick[6] = {0};
+  /* where spheres are kept off a wall, none is like another */
+  const sd_groups groups = {scene->groups.n, scene->groups.first, NULL};
   if (status == SD_OK) status = sd_rank_spheres_take(here, &scene->spheres, 3, n, scene->n_all, 1);
   if (status == SD_OK && !sd_reserve(&s->height, sizeof(double), (size_t) n, &s->height_room))
     status = SD_ENOMEMORY;
   if (status == SD_OK && !stand_spheres(s, &scene->spheres)) status = SD_ENOTFINITE;
-  if (status == SD_OK) status = sd_ewald_pairs_place(&s->pairs, &here->spheres, n, here->n_all);
+  if (status == SD_OK)
+    status = sd_ewald_pairs_place(&s->pairs, &here->spheres, &groups, n, here->n_all);
   if (status == SD_OK) status = place_images(s);
   if (status == SD_OK) list_spheres(s);
   if (status == SD_OK)

@@ -135,45 +135,52 @@ sd_status sd_multiblob_create(int n, int one_body, sd_multiblob *m)
 
 /* --- the addition ----------------------------------------------------------------------------- */
 
+/* What the forces of a sphere add up to, lengths in radii: A0, Q = sum r_k (r_k.f_k), B = sum r_k f_k (row:
+ * r_k) */
+typedef struct {
+  double A0[3], Q[3], B[9];
+} moments;
+
+static void moments_of(int n, double inverse, const double *r, const double *f, moments *m)
+{
+  *m = (moments){{0.0}, {0.0}, {0.0}};
+  for (int k = 0; k < n; k++) {
+    const double *fk = f + 3 * k;
+    const double e[3] = {inverse * r[3 * k], inverse * r[3 * k + 1], inverse * r[3 * k + 2]};
+    const double along = sd_dot(e, fk);
+    for (int d = 0; d < 3; d++) {
+      m->A0[d] += fk[d];
+      m->Q[d] += e[d] * along;
+      for (int p = 0; p < 3; p++) m->B[3 * d + p] += e[d] * fk[p];
+    }
+  }
+}
+
+/* All points have one distance, so that g_k f = same f - r_k (r_k.f)/10 with one number for all. What S and
+ * T do is one matrix times r_k. */
 void sd_multiblob_one_body(const sd_multiblob *m, double a, double eta, const double *r,
                            const double *f, double *u)
 {
   const double unit = 1.0 / (6.0 * SD_PI * eta * a), inverse = 1.0 / a;
-  double A0[3] = {0.0}, A1[3] = {0.0}, S[9] = {0.0}, T[3] = {0.0}, even[3], odd[3];
-  for (int k = 0; k < m->n; k++) {
-    const double *fk = f + 3 * k;
-    double e[3], g[3];
-    for (int d = 0; d < 3; d++) e[d] = inverse * r[3 * k + d];
-    pressure_mode(m, e, fk, g); /* g_k is symmetric */
-    for (int d = 0; d < 3; d++) {
-      A0[d] += fk[d];
-      A1[d] += g[d];
-      for (int p = 0; p < 3; p++) S[3 * d + p] += 0.5 * (e[d] * fk[p] + e[p] * fk[d]);
-    }
-    if (m->rotation != 0.0) {
-      double couple[3];
-      sd_cross(e, fk, couple);
-      for (int d = 0; d < 3; d++) T[d] += couple[d];
-    }
-  }
-  const double trace = (S[0] + S[4] + S[8]) / 3.0;
+  const double same = 0.2 * m->radius * m->radius + (m->point * m->point - 1.0) / 6.0;
+  const double strain = 0.5 * unit * m->strain, spin = unit * m->rotation;
+  moments of;
+  moments_of(m->n, inverse, r, f, &of);
+  const double *B = of.B, trace = (B[0] + B[4] + B[8]) / 1.5;
+  double all[3], odd[3], S[9];
   for (int d = 0; d < 3; d++) {
-    S[4 * d] -= trace;
-    even[d] = unit * (m->alpha * A0[d] + m->beta * A1[d]);
-    odd[d] = unit * (m->beta * A0[d] + m->delta * A1[d]);
+    const double A1 = same * of.A0[d] - 0.1 * of.Q[d];
+    odd[d] = unit * (m->beta * of.A0[d] + m->delta * A1);
+    all[d] = unit * (m->alpha * of.A0[d] + m->beta * A1) + same * odd[d];
+    for (int p = 0; p < 3; p++)
+      S[3 * d + p] = inverse *
+          (strain * (B[3 * d + p] + B[3 * p + d] - (d == p ? trace : 0.0)) + spin * (B[3 * p + d] - B[3 * d + p]));
   }
-  for (int k = 0; k < 9; k++) S[k] *= unit * m->strain;
-  const double spin = unit * m->rotation;
-  if (spin != 0.0) { /* T x r as S r, antisymmetric */
-    S[1] -= spin * T[2], S[2] += spin * T[1], S[5] -= spin * T[0];
-    S[3] += spin * T[2], S[6] -= spin * T[1], S[7] += spin * T[0];
-  }
+  for (int d = 0; d < 3; d++) odd[d] *= 0.1 * inverse * inverse;
   for (int k = 0; k < m->n; k++) {
-    double e[3], g[3], strain[3];
-    for (int d = 0; d < 3; d++) e[d] = inverse * r[3 * k + d];
-    pressure_mode(m, e, odd, g);
-    sd_multiply3(S, e, strain);
-    for (int d = 0; d < 3; d++) u[3 * k + d] += even[d] + g[d] + strain[d];
+    const double *rk = r + 3 * k, along = sd_dot(rk, odd);
+    for (int d = 0; d < 3; d++)
+      u[3 * k + d] += all[d] + (S[3 * d] * rk[0] + S[3 * d + 1] * rk[1] + S[3 * d + 2] * rk[2]) - along * rk[d];
   }
 }
 

@@ -66,7 +66,7 @@ sd_status sd_multiblob_create_half(int n, int one_body, sd_multiblob *out);
 void sd_multiblob_axes(double turn[9]);
 
 /* u [3n] += the addition for the forces f [3n] of one whole sphere, r [3n]: from its centre, turned
- * as it may be. No aliasing. Costs about 60 n multiplications. */
+ * as it may be. No aliasing. Costs about 35 n multiplications. */
 void sd_multiblob_one_body(const sd_multiblob *m, double a, double eta, const double *r,
                            const double *f, double *u);
 /* The same as a matrix, of a viscosity of 1: added to the rows and columns of these points in a matrix

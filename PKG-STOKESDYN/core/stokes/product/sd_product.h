@@ -46,6 +46,16 @@ typedef struct {
   const double *x, *a, *w;
 } sd_spheres;
 
+/* Spheres that stand close together, as the points of one shell do: group g is spheres first[g] ...
+ * first[g + 1] - 1, first [n + 1], and n groups are all that there are. Those of equal form, from 0 to
+ * SD_GROUP_FORMS - 1, have the same spheres at the same places from each other, all with a radius, and one
+ * viscosity each; form -1: it is like no other. form NULL: none is. first NULL: there are no groups. */
+enum { SD_GROUP_FORMS = 16 };
+typedef struct {
+  int n;
+  const int *first, *form;
+} sd_groups;
+
 /* Pairs as rows: targets 0 ... n-1 are the first n spheres; their sources are neighbor[first[i]]
  * ... neighbor[first[i+1]-1]. Every directed pair once. A source may be a ghost (index >= n) and
  * may be the image of any sphere, also of i itself. */

@@ -27,6 +27,7 @@ static void near_parts_agree(void **state)
 {
   (void) state;
   const sd_ewald_box box = {.periodic = 1, .edge = {12, 12, 12}};
+  const sd_groups none = {0};
   for (int equal = 0; equal < 2; equal++)
     for (int width = 3; width <= 6; width += 3)
       for (int digits = 1; digits <= 12; digits += 3) { /* each has another degree of polynomial */
@@ -39,7 +40,7 @@ static void near_parts_agree(void **state)
           if (!sd_isa_supported(isa)) continue;
           sd_ewald_pairs p = {0};
           sd_ewald_pairs_create(&p, &how, SD_KERNELS_OF(sd_ewald, plain, isa), width);
-          assert_int_equal(sd_ewald_pairs_place(&p, &spheres, N - 20, N), SD_OK); /* the last are ghosts */
+          assert_int_equal(sd_ewald_pairs_place(&p, &spheres, &none, N - 20, N), SD_OK); /* the last are ghosts */
           sd_ewald_pairs_apply(&p, N - 20, c.F, c.F + width * (N - 20), k < 0 ? expected : u);
           sd_ewald_pairs_free(&p);
           for (int i = 0; i < width * (N - 20); i++) {

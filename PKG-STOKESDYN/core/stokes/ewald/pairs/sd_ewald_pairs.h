@@ -6,13 +6,15 @@
 #ifndef SD_EWALD_PAIRS_H
 #define SD_EWALD_PAIRS_H
 
+#include "sd_ewald_cells.h"
+#include "sd_ewald_groups.h"
 #include "sd_ewald_internal.h"
 #include "sd_status.h"
 
 SD_BEGIN_C
 
 /* Zero-initialise; sd_ewald_pairs_free in the end. */
-typedef struct {
+typedef struct sd_ewald_pairs {
   const struct sd_ewald_kernels *kernels;
   sd_ewald ewald;
   int width, degree;
@@ -30,23 +32,27 @@ typedef struct {
   /* sd_near_part's, in one block; before the products u holds the centres [3][rows] */
   double *row, *torque_row, *u, *memory;
   size_t room, sphere_room, target_room, first_room, neighbor_room;
-  /* cells: [cells + 1] first row of each. Columns of cells near a cell: [3 columns] steps of x, of y,
-   * and along z to either side; begin and end of the rows in them, [2 columns] */
-  int *cell_first;
-  int columns, *column, *range;
-  size_t cell_room, column_room, range_room;
+  /* rows are found by these: one by one, or where they stand in groups, by groups */
+  sd_ewald_cells cells;
+  sd_ewald_groups groups;
 } sd_ewald_pairs;
 
 /* Polynomials for a splitting. */
 void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
                            const struct sd_ewald_kernels *kernels, int width);
 
-/* n spheres of ours and the ghosts after them, n_all together. SD_OK or SD_ENOMEMORY. */
-sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, int n, int n_all);
+/* n spheres of ours and the ghosts after them, n_all together, in groups or not. SD_OK or SD_ENOMEMORY. */
+sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, const sd_groups *groups, int n,
+                               int n_all);
 
 /* F [width n] of ours and ghosts [width (n_all - n)] -> u [width n]; 0 for spheres without radius */
 void sd_ewald_pairs_apply(sd_ewald_pairs *p, int n, const double *F, const double *ghosts,
                           double *u);
+
+/* For sd_ewald_groups: neighbours of a row among so many ranges of rows, behind the first `many` of all;
+ * returns how many there are then. And the kernels' table. */
+long sd_ewald_pairs_near(sd_ewald_pairs *p, int row, int ranges, const int *range, long many);
+sd_near_part sd_ewald_pairs_part(const sd_ewald_pairs *p);
 
 void sd_ewald_pairs_free(sd_ewald_pairs *p);
 

@@ -1,0 +1,226 @@
+#include "sd_ewald_groups.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sd_constants.h"
+#include "sd_ewald_pairs.h"
+#include "sd_linear.h"
+#include "sd_room.h"
+
+enum { COLUMNS = 3 * SD_GROUP_POINTS };
+
+void sd_ewald_groups_free(sd_ewald_groups *g)
+{
+  sd_ewald_cells_free(&g->cells);
+  free(g->middle);
+  free(g->first);
+  free(g->near);
+  free(g->range);
+  free(g->sphere);
+  free(g->form);
+  free(g->block);
+  memset(g, 0, sizeof(*g));
+}
+
+int sd_ewald_groups_serve(const sd_ewald_pairs *p, const sd_groups *groups)
+{
+  if (p->width != 3 || !groups->first) return 0;
+  for (int g = 0; g < groups->n; g++)
+    if (groups->first[g + 1] - groups->first[g] > SD_GROUP_POINTS) return 0;
+  return 1;
+}
+
+/* --- rows --- */
+
+/* Middles of the points that there are, and their numbers; returns how far a point is from a middle at
+ * most. */
+static double find_middles(const sd_groups *groups, const sd_spheres *s, double *middle, double *points)
+{
+  double farthest = 0.0;
+  for (long g = 0; g < groups->n; g++) {
+    double *at = middle + 3 * g;
+    at[0] = at[1] = at[2] = points[g] = 0.0;
+    for (int i = groups->first[g]; i < groups->first[g + 1]; i++) {
+      if (!(s->a[i] > 0.0)) continue;
+      points[g]++;
+      for (int d = 0; d < 3; d++) at[d] += s->x[3 * (long) i + d];
+    }
+    for (int d = 0; d < 3 && points[g] > 0.0; d++) at[d] /= points[g];
+    for (int i = groups->first[g]; i < groups->first[g + 1]; i++) {
+      const double far = s->a[i] > 0.0 ? sd_distance_squared(at, s->x + 3 * (long) i) : 0.0;
+      farthest = far > farthest ? far : farthest;
+    }
+  }
+  return sqrt(farthest);
+}
+
+sd_status sd_ewald_groups_sort(sd_ewald_pairs *p, const sd_groups *groups, int n)
+{
+  sd_ewald_groups *g = &p->groups;
+  const size_t count = (size_t) groups->n;
+  if (!sd_reserve(&g->middle, sizeof(double), 7 * count + SD_FULL, &g->middle_room) ||
+      !sd_reserve(&g->first, sizeof(int), count + 1, &g->first_room))
+    return SD_ENOMEMORY;
+  double *points = g->middle + 3 * count;
+  const double farthest = find_middles(groups, &p->spheres, g->middle, points);
+  /* a hair more, so that rounding of the middles loses no pair */
+  const double reach = (p->ewald.range + 2.0 * farthest) * (1.0 + 1e-9);
+  const sd_status status =
+      sd_ewald_cells_sort(&g->cells, g->middle, points, groups->n, reach, points + count);
+  if (status != SD_OK) return status;
+  p->rows = p->n = 0;
+  for (int k = 0; k < g->cells.rows; k++) {
+    const int group = g->cells.place[k];
+    g->first[k] = p->rows;
+    for (int i = groups->first[group]; i < groups->first[group + 1]; i++)
+      if (p->spheres.a[i] > 0.0) {
+        if (i < n) p->target[p->n++] = p->rows;
+        p->sphere[p->rows++] = i;
+      }
+  }
+  g->first[g->cells.rows] = p->rows;
+  return SD_OK;
+}
+
+/* --- neighbours --- */
+
+typedef struct {
+  sd_ewald_pairs *pairs;
+  const sd_groups *groups;
+  int n;
+  /* neighbours of all rows so far */
+  long many;
+} finder;
+
+static int is_ghost(const finder *f, int row)
+{
+  return f->groups->first[f->pairs->groups.cells.place[row]] >= f->n;
+}
+
+static int form_of(const finder *f, int row)
+{
+  const sd_groups *all = f->groups;
+  return all->form && !is_ghost(f, row) ? all->form[f->pairs->groups.cells.place[row]] : -1;
+}
+
+/* Rows of points in the groups near that of this row, its own first; groups side by side are one range. */
+static int ranges_of_points(finder *f, int row, int found)
+{
+  sd_ewald_groups *g = &f->pairs->groups;
+  int many = 1;
+  g->range[1] = form_of(f, row) < 0 && !is_ghost(f, row) ? g->first[row + 1] : 0;
+  for (int k = 0; k < found; k++) {
+    const int other = g->near[k];
+    if (is_ghost(f, row) && is_ghost(f, other)) continue;
+    if (many > 1 && g->range[2 * many - 1] == g->first[other]) many--;
+    else g->range[2 * many] = g->first[other];
+    g->range[2 * many + 1] = g->first[other + 1];
+    many++;
+  }
+  return many;
+}
+
+static sd_status visit_group(void *ctx, int row, int ranges, long most)
+{
+  finder *f = ctx;
+  sd_ewald_pairs *p = f->pairs;
+  sd_ewald_groups *g = &p->groups;
+  sd_ewald_cells *c = &g->cells;
+  const size_t room = (size_t) most + SD_FULL;
+  if (!sd_reserve(&g->near, sizeof(int), room, &g->near_room) ||
+      !sd_reserve(&g->range, sizeof(int), 2 * room, &g->range_room))
+    return SD_ENOMEMORY;
+  double x[3];
+  sd_ewald_cells_at(c, row, x);
+  const int found = (int) p->kernels->search(c->centre, c->rows, c->range, ranges, x, c->reach * c->reach, g->near);
+  const int many = ranges_of_points(f, row, found);
+  long points = SD_GROUP_POINTS;
+  for (int k = 1; k < many; k++) points += g->range[2 * k + 1] - g->range[2 * k];
+  for (int k = g->first[row]; k < g->first[row + 1]; k++) {
+    if (!sd_extend(&p->neighbor, sizeof(int), (size_t) (f->many + points + 2 * SD_FULL), &p->neighbor_room))
+      return SD_ENOMEMORY;
+    g->range[0] = k + 1 < g->range[1] ? k + 1 : g->range[1];
+    p->first[k] = f->many;
+    f->many = sd_ewald_pairs_near(p, k, many, g->range, f->many);
+  }
+  return SD_OK;
+}
+
+/* --- what the points of a group do to each other --- */
+
+/* Column by column what the kernel of pairs makes of the rows of a group for unit forces. */
+static void make_block(const sd_ewald_pairs *p, int first, int points, double *block)
+{
+  sd_near_part part = sd_ewald_pairs_part(p);
+  double row[8 * (SD_GROUP_POINTS + 1)], u[4 * (SD_GROUP_POINTS + 1)];
+  long start[SD_GROUP_POINTS + 1] = {0};
+  int neighbor[2 * SD_FULL * SD_GROUP_POINTS];
+  for (int k = 0; k < points; k++) {
+    start[k + 1] = start[k];
+    for (int j = k + 1; j < points; j++) neighbor[start[k + 1]++] = j;
+    while (start[k + 1] % SD_FULL) neighbor[start[k + 1]++] = points;
+  }
+  memcpy(row, p->row + 8 * (long) first, sizeof(double) * 8 * (size_t) points);
+  memcpy(row + 8 * points, p->row + 8 * (long) p->rows, 8 * sizeof(double));
+  part.rows = points;
+  part.first = start;
+  part.neighbor = neighbor;
+  part.row = row;
+  part.u = u;
+  memset(block, 0, sizeof(double) * COLUMNS * SD_GROUP_ROW);
+  for (int j = 0; j < 3 * points; j++) {
+    for (int k = 0; k < points; k++)
+      for (int d = 0; d < 3; d++) row[8 * k + 4 + d] = 3 * k + d == j;
+    memset(u, 0, sizeof(u));
+    p->kernels->near_part(&part);
+    for (int k = 0; k < points; k++)
+      for (int d = 0; d < 3; d++)
+        block[SD_GROUP_ROW * j + 3 * k + d] = p->scale / (8.0 * SD_PI) * u[4 * k + d];
+  }
+}
+
+/* Of the first group of each form; a form of which there is no group of ours has none. */
+static sd_status make_blocks(finder *f)
+{
+  sd_ewald_groups *g = &f->pairs->groups;
+  int forms = 0;
+  g->own = 0;
+  for (int k = 0; k < g->cells.rows; k++) forms = form_of(f, k) < forms ? forms : form_of(f, k) + 1;
+  if (forms == 0) return SD_OK;
+  const size_t most = (size_t) g->cells.rows;
+  if (!sd_reserve(&g->sphere, sizeof(int), most, &g->sphere_room) ||
+      !sd_reserve(&g->form, sizeof(int), most, &g->form_room) ||
+      !sd_reserve(&g->block, sizeof(double) * COLUMNS * SD_GROUP_ROW, (size_t) forms, &g->block_room))
+    return SD_ENOMEMORY;
+  unsigned made = 0;
+  for (int k = 0; k < g->cells.rows; k++) {
+    const int form = form_of(f, k), first = g->first[k];
+    if (form < 0) continue;
+    if (!(made >> form & 1))
+      make_block(f->pairs, first, g->first[k + 1] - first, g->block + COLUMNS * SD_GROUP_ROW * (long) form);
+    made |= 1u << form;
+    g->sphere[g->own] = f->pairs->sphere[first];
+    g->form[g->own++] = form;
+  }
+  return SD_OK;
+}
+
+sd_status sd_ewald_groups_find(sd_ewald_pairs *p, const sd_groups *groups, int n)
+{
+  finder f = {.pairs = p, .groups = groups, .n = n};
+  const sd_status status = sd_ewald_cells_walk(&p->groups.cells, visit_group, &f);
+  p->first[p->rows] = f.many;
+  return status == SD_OK ? make_blocks(&f) : status;
+}
+
+void sd_ewald_groups_apply(const sd_ewald_pairs *p, const double *F, double *u)
+{
+  const sd_ewald_groups *g = &p->groups;
+  for (int k = 0; k < g->own; k++) {
+    const long i = g->sphere[k];
+    const double w = p->spheres.w[i];
+    p->kernels->own_block(g->block + COLUMNS * SD_GROUP_ROW * (long) g->form[k], w * w, F + 3 * i, u + 3 * i);
+  }
+}

@@ -1,0 +1,131 @@
+/* The near part where points stand in groups: the same as point by point, whatever the groups are; so are the whole
+ * products of the engines. */
+#include "ewald/periodic.h"
+
+#include "sd_ewald_pairs.h"
+#include "sd_multiblob_points.h"
+
+enum { SPHERES = 40, GHOSTS = 15, ALL = SPHERES + GHOSTS, N = 12 * SPHERES, N_ALL = 12 * ALL };
+
+static const sd_isa sets[] = {SD_ISA_PLAIN, SD_ISA_BASELINE, SD_ISA_AVX2, SD_ISA_AVX512};
+
+/* Shells of 12 of two radii, some of which overlap */
+typedef struct {
+  double x[3 * N_ALL], a[N_ALL], w[N_ALL], F[3 * N_ALL];
+  int first[ALL + 1], form[ALL];
+} cloud;
+
+static cloud make(double small)
+{
+  static sd_multiblob m;
+  static cloud c;
+  double X[3 * ALL], A[ALL];
+  uint64_t seed = 11;
+  assert_int_equal(sd_multiblob_create(12, 1, &m), SD_OK);
+  for (int i = 0; i < ALL; i++) {
+    for (int d = 0; d < 3; d++) X[3 * i + d] = uniform(&seed, 0, 9);
+    A[i] = i % 2 ? 1.0 : small;
+    c.form[i] = i % 2;
+    for (int k = 0; k < 12; k++) c.w[12 * i + k] = 1.0 + 0.1 * (i % 3);
+  }
+  const sd_multiblob_spheres s = {.x = X, .a = A, .n = ALL};
+  sd_multiblob_expand(&m, &s, NULL, c.x, c.a);
+  for (int i = 0; i <= ALL; i++) c.first[i] = 12 * i;
+  for (int i = 0; i < 3 * N_ALL; i++) c.F[i] = uniform(&seed, -1, 1);
+  return c;
+}
+
+static void near_part(const cloud *c, const sd_groups *groups, sd_isa isa, double *u)
+{
+  const sd_ewald_box box = {.periodic = 1, .edge = {12, 12, 12}};
+  const sd_ewald how = periodic_choose(&box, c->a, N, 3, 1e-4);
+  const sd_spheres spheres = {c->x, c->a, c->w};
+  sd_ewald_pairs p = {0};
+  sd_ewald_pairs_create(&p, &how, SD_KERNELS_OF(sd_ewald, plain, isa), 3);
+  for (int again = 0; again < 2; again++) /* a second place() finds what the first has left */
+    assert_int_equal(sd_ewald_pairs_place(&p, &spheres, groups, N, N_ALL), SD_OK);
+  sd_ewald_pairs_apply(&p, N, c->F, c->F + 3 * N, u);
+  sd_ewald_pairs_free(&p);
+}
+
+static void check(const cloud *c, const sd_groups *groups, sd_isa isa)
+{
+  static double expected[3 * N], u[3 * N];
+  const sd_groups none = {0};
+  double scale = 0.0;
+  near_part(c, &none, isa, expected);
+  near_part(c, groups, isa, u);
+  for (int i = 0; i < 3 * N; i++) scale = fmax(scale, fabs(expected[i]));
+  assert_true(scale > 0.0);
+  for (int i = 0; i < 3 * N; i++) CHECK_NEAR(u[i], expected[i], 1e-13 * scale);
+}
+
+/* Of all, of some, of none with a form; radii alike and not; each set of instructions */
+static void forms_change_nothing(void **state)
+{
+  (void) state;
+  for (int k = 0; k < 4; k++)
+    for (int unlike = 0; unlike < 2; unlike++) {
+      if (!sd_isa_supported(sets[k])) continue;
+      cloud c = make(unlike ? 0.7 : 1.0);
+      check(&c, &(sd_groups){ALL, c.first, c.form}, sets[k]);
+      check(&c, &(sd_groups){ALL, c.first, NULL}, sets[k]);
+      for (int i = 0; i < ALL; i += 3) c.form[i] = -1;
+      check(&c, &(sd_groups){ALL, c.first, c.form}, sets[k]);
+    }
+}
+
+/* Points that take no part, whole groups of them, groups of one to twelve, and one that is too large */
+static void any_groups_will_do(void **state)
+{
+  (void) state;
+  cloud c = make(0.7);
+  for (int i = 0; i < ALL; i++) c.form[i] = -1;
+  for (int i = 0; i < N_ALL; i += 5) c.a[i] = 0.0;
+  for (int i = 24; i < 48; i++) c.a[i] = 0.0;
+  check(&c, &(sd_groups){ALL, c.first, c.form}, SD_ISA_PLAIN);
+  int first[N_ALL + 1], n = 0;
+  for (int at = 0, size = 1; at < N_ALL; at += size, size = size % 12 + 1) {
+    const int end = at < N ? N : N_ALL;
+    first[n++] = at;
+    if (at + size > end) size = end - at;
+  }
+  first[n] = N_ALL;
+  check(&c, &(sd_groups){n, first, NULL}, SD_ISA_PLAIN);
+  int two[ALL + 1] = {0};
+  for (int k = 0; k < ALL; k++) two[k] = k == 0 ? 0 : c.first[k + 1];
+  two[ALL - 1] = N_ALL;
+  check(&c, &(sd_groups){ALL - 1, two, NULL}, SD_ISA_PLAIN);
+}
+
+/* A form is one block: the near part is as symmetric as before. */
+static void near_part_is_symmetric(void **state)
+{
+  (void) state;
+  cloud c = make(0.7);
+  static double F[3 * N_ALL], u[3 * N], v[3 * N];
+  double uF = 0.0, vG = 0.0, size = 0.0;
+  const sd_groups groups = {ALL, c.first, c.form};
+  uint64_t seed = 3;
+  for (int i = 3 * N; i < 3 * N_ALL; i++) c.F[i] = 0.0;
+  near_part(&c, &groups, SD_ISA_PLAIN, u);
+  memcpy(F, c.F, sizeof(F));
+  for (int i = 0; i < 3 * N; i++) c.F[i] = uniform(&seed, -1, 1);
+  near_part(&c, &groups, SD_ISA_PLAIN, v);
+  for (int i = 0; i < 3 * N; i++) {
+    uF += u[i] * c.F[i];
+    vG += v[i] * F[i];
+    size += fabs(v[i] * F[i]);
+  }
+  CHECK_NEAR(uF, vG, 1e-13 * size);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(forms_change_nothing),
+      cmocka_unit_test(any_groups_will_do),
+      cmocka_unit_test(near_part_is_symmetric),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
