@@ -145,15 +145,22 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void refuse_midpoint(const Hydrodynamics &) const;
   void push_on(int i, double *FT) const;
   Given given() const;
-  /* Clumps at the start of a step, their spheres x [3 members] side by side, each so many edges h of the box
-   * away from its atom: all as in WholeClumps */
+  /* Clumps at the start of a step, their spheres x [3 members] side by side, each so many edges h [6] of the
+   * box away from its atom: all as in WholeClumps, where they stand now; or kept, to go from there later */
   struct Clumps {
+    const std::vector<ClumpPoses::Clump> &all;
+    const std::vector<double> &x;
+    const std::vector<int> &steps;
+    const double *h;
+  };
+  struct KeptClumps {
     std::vector<ClumpPoses::Clump> all;
     std::vector<double> x;
     std::vector<int> steps;
     double h[6];
+    Clumps clumps() const { return {all, x, steps, h}; }
   };
-  Clumps clumps_now(const Hydrodynamics &) const;
+  static Clumps clumps_now(const Hydrodynamics &);
   /* A displacement and a turn, move [6], of a point at centre [3] in the axes of the shape; place [3]:
    * where the centroid is put, for whoever wants that, else nullptr */
   struct ClumpStep {
@@ -175,7 +182,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   struct {
     std::vector<int> who, lone;
     Places x, there;
-    Clumps clumps;
+    KeptClumps clumps;
     std::vector<double> mu;
     sd_box box, middle;
   } start;

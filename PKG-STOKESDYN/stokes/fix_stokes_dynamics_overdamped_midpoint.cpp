@@ -57,7 +57,9 @@ void FixStokesDynamicsOverdamped::begin_step(const Hydrodynamics &hydro)
 {
   start.who = hydro.ambient.who();
   start.lone = hydro.motion().lone();
-  start.clumps = clumps_now(hydro);
+  const Clumps now = clumps_now(hydro);
+  start.clumps = {now.all, now.x, now.steps, {}};
+  std::copy_n(now.h, 6, start.clumps.h);
   start.x = places_now(hydro);
   start.mu = directions.all();
   start.box = box_of(domain);
@@ -127,7 +129,7 @@ void FixStokesDynamicsOverdamped::place(Hydrodynamics &hydro, const Ride &ride, 
     go(clump.known == SD_BODY_PINNED, &V.clumps[6 * c], &there.clumps[3 * c], clump.pose + 9, s.move);
     return s;
   };
-  step_clumps(hydro, start.clumps, step, take);
+  step_clumps(hydro, start.clumps.clumps(), step, take);
 }
 
 /* In its box, by velocities of its middle */

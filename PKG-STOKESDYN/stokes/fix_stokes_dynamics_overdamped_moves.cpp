@@ -73,12 +73,10 @@ void FixStokesDynamicsOverdamped::tracked_velocity(const ClumpPoses::Clump &clum
   for (int d = 0; d < 3; d++) V[d] += turning[d];
 }
 
-FixStokesDynamicsOverdamped::Clumps FixStokesDynamicsOverdamped::clumps_now(const Hydrodynamics &hydro) const
+FixStokesDynamicsOverdamped::Clumps FixStokesDynamicsOverdamped::clumps_now(const Hydrodynamics &hydro)
 {
   const WholeClumps &whole = hydro.scene.whole;
-  Clumps now = {hydro.motion().clumps(), whole.x, whole.steps, {}};
-  std::copy_n(whole.h, 6, now.h);
-  return now;
+  return {hydro.motion().clumps(), whole.x, whole.steps, whole.h};
 }
 
 /* Clumps from where they stood; how each goes is what step(c) says. take(i, row) for each of their atoms, which
