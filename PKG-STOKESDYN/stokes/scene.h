@@ -62,6 +62,8 @@ class Scene : protected LAMMPS_NS::Pointers {
     int far_field = AUTO;
     /* error of a product by Ewald sums over the rms of F/(6 pi eta a) */
     double far_field_tolerance = 0.0;
+    // relative residual at which a solve ends: products of floats have none far below 1e-6
+    double residual = 1e-3;
     /* periodic sums are split into two positive parts, for noise: sd_ewald_choose_positive; 0: not so */
     double positive = 0.0;
     bool everybody() const { return std::isinf(cutoff) && !clumps_only; }

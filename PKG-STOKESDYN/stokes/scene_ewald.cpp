@@ -19,6 +19,9 @@ namespace StokesDyn {
 // Of spheres near those of a rank: 10 GB.
 static const double MOST_IMAGES = 1e8;
 
+// Residual down to which a solve goes with products of floats: a hundred times their rounding, and more.
+static const double FLOATS_SOLVE_TO = 0.99e-4;
+
 sd_ewald_box Scene::lattice_box(const Domain *domain)
 {
   const Lattice lattice = Lattice::of(domain);
@@ -109,6 +112,7 @@ bool Scene::split()
         sd_ewald_choose_positive(&box, &sizes, width(), tolerance, settings.positive, &ewald);
   else
     status = sd_ewald_levels_choose(&box, &sizes, width(), tolerance, &ewald, &second_level);
+  if (settings.residual < FLOATS_SOLVE_TO) ewald.single = 0;
   ewald.box = box;
   if (status != SD_OK && must)
     voice.fail("keyword far_field: no grid for Ewald sums of " + text(sizes.all.count) +
@@ -201,7 +205,7 @@ void Scene::tell()
   if (second_level.from > 0.0)
     now += "; " + text(second_level.count) + " spheres of radius " + text(second_level.from) +
         " and more on a second level: " + parameters_of(second_level.split);
-  now += "; far_field_tolerance " + text(e.tolerance) + "\n";
+  now += "; far_field_tolerance " + text(e.tolerance) + (e.single ? ", in single precision\n" : "\n");
   if (now != said && comm->me == 0) utils::logmesg(lmp, now);
   said = now;
 }

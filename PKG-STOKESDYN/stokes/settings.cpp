@@ -30,6 +30,7 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   }
   if (scene.far_field_tolerance == 0.0)
     scene.far_field_tolerance = std::max(1e-13, 0.1 * tolerance);
+  scene.residual = tolerance;
   // What Ewald sums have not got.
   if (scene.tensor == SD_TENSOR_OSEEN || precondition == Preconditioner::SPARSE)
     scene.far_field = Scene::Settings::DIRECT;

@@ -1,9 +1,11 @@
-/* Vectors of LANES doubles, as the instruction set of a file of kernels has them (sd_isa.h), and the
+/* Vectors of LANES numbers, as the instruction set of a file of kernels has them (sd_isa.h), and the
  * few operations that + - * / and comparisons do not cover. For sources only.
  *
+ *   real     a number: double; float in a file that defines SD_SINGLE before, with twice as many in a
+ *            vector
  *   vec      a vector; multiply-adds are fused by the compiler where the set has them
  *   yes_no   what comparisons of two vectors make
- *   row4     four doubles, for rows of four numbers
+ *   row4     four numbers, for rows of four
  *   floats   FLOATS floats, at any address
  *
  * A file that cannot do with as few lanes as a set has defines LEAST_LANES before; the compiler then
@@ -15,21 +17,35 @@
 #include <string.h>
 
 #include "sd_isa.h"
+#include "sd_real.h"
 
-#if defined(LEAST_LANES) && SD_LANES < LEAST_LANES
+#if defined(SD_SINGLE) && SD_LANES > 1
+#define LANES (2 * SD_LANES)
+#elif defined(LEAST_LANES) && SD_LANES < LEAST_LANES
 #define LANES LEAST_LANES
 #else
 #define LANES SD_LANES
 #endif
 #define FLOATS (SD_LANES == 1 ? 1 : SD_LANES == 2 ? 4 : 8)
 
+/* How many lanes so many bytes have; the instruction `op` of a register of so many bits (nothing: 128) */
+#ifdef SD_SINGLE
+#define LANES_OF(bytes) ((bytes) / 4)
+#define PACKED(bits, op) _mm##bits##_##op##_ps
+#define MASK(yes) _mm512_movepi32_mask((__m512i) (yes))
+#else
+#define LANES_OF(bytes) ((bytes) / 8)
+#define PACKED(bits, op) _mm##bits##_##op##_pd
+#define MASK(yes) _mm512_movepi64_mask((__m512i) (yes))
+#endif
+
 #ifdef SD_HAS_X86_KERNELS
 #include <immintrin.h>
-#if LANES == 8 && defined(__AVX512DQ__)
+#if LANES == LANES_OF(64) && defined(__AVX512DQ__)
 #define SD_AVX512
-#elif LANES == 4 && defined(__AVX2__)
+#elif LANES == LANES_OF(32) && defined(__AVX2__)
 #define SD_AVX2
-#elif LANES == 2 && defined(__SSE2__)
+#elif LANES == LANES_OF(16) && defined(__SSE2__)
 #define SD_SSE2
 #endif
 #endif
@@ -47,22 +63,34 @@
 #endif
 
 /* LANEWISE: a vector of f(lane, argument). LANE: a number of a vector. */
+#ifdef SD_SINGLE
+typedef int truth;
+#define ROOT_OF(lane, a) sqrtf(LANE(a, lane))
+#else
+typedef long long truth;
+#define ROOT_OF(lane, a) sqrt(LANE(a, lane))
+#endif
 #if LANES == 1
-typedef double vec;
-typedef long long yes_no;
+typedef real vec;
+typedef truth yes_no;
 #define LANEWISE(f, a) {f(0, a)}
 #define LANE(v, k) (v)
 #else
-typedef double vec __attribute__((vector_size(8 * LANES)));
-typedef double vec_anywhere __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
-typedef long long yes_no __attribute__((vector_size(8 * LANES)));
+enum { VEC_BYTES = LANES * (int) sizeof(real) };
+typedef real vec __attribute__((vector_size(VEC_BYTES)));
+typedef real vec_anywhere __attribute__((vector_size(VEC_BYTES), aligned(sizeof(real)), may_alias));
+typedef truth yes_no __attribute__((vector_size(VEC_BYTES)));
 #define LANE(v, k) (v)[k]
 #if LANES == 2
 #define LANEWISE(f, a) {f(0, a), f(1, a)}
 #elif LANES == 4
 #define LANEWISE(f, a) {f(0, a), f(1, a), f(2, a), f(3, a)}
-#else
+#elif LANES == 8
 #define LANEWISE(f, a) {f(0, a), f(1, a), f(2, a), f(3, a), f(4, a), f(5, a), f(6, a), f(7, a)}
+#else
+#define LANEWISE(f, a)                                                            \
+  {f(0, a), f(1, a), f(2, a),  f(3, a),  f(4, a),  f(5, a),  f(6, a),  f(7, a),     \
+   f(8, a), f(9, a), f(10, a), f(11, a), f(12, a), f(13, a), f(14, a), f(15, a)}
 #endif
 #endif
 #if SD_LANES == 1
@@ -72,9 +100,8 @@ typedef float floats __attribute__((vector_size(4 * FLOATS), aligned(4), may_ali
 #endif
 #define SAME(lane, a) (a)
 #define NUMBER(lane, a) (lane)
-#define ROOT_OF(lane, a) sqrt(LANE(a, lane))
 
-INLINE vec all(double a)
+INLINE vec all(real a)
 {
   return (vec) LANEWISE(SAME, a);
 }
@@ -82,18 +109,18 @@ INLINE vec all(double a)
 /* --- memory --- */
 
 /* From and to a multiple of the vector's size */
-INLINE vec load(const double *p)
+INLINE vec load(const real *p)
 {
   return *(const vec *) p;
 }
 
-INLINE void store(double *p, vec a)
+INLINE void store(real *p, vec a)
 {
   *(vec *) p = a;
 }
 
 /* From and to anywhere */
-INLINE vec load_any(const double *p)
+INLINE vec load_any(const real *p)
 {
 #if LANES == 1
   return *p;
@@ -102,7 +129,7 @@ INLINE vec load_any(const double *p)
 #endif
 }
 
-INLINE void store_any(double *p, vec a)
+INLINE void store_any(real *p, vec a)
 {
 #if LANES == 1
   *p = a;
@@ -117,11 +144,11 @@ INLINE void store_any(double *p, vec a)
 INLINE unsigned bits(yes_no yes)
 {
 #if defined(SD_AVX512)
-  return _mm512_movepi64_mask((__m512i) yes);
+  return MASK(yes);
 #elif defined(SD_AVX2)
-  return (unsigned) _mm256_movemask_pd((__m256d) yes);
+  return (unsigned) PACKED(256, movemask)((vec) yes);
 #elif defined(SD_SSE2)
-  return (unsigned) _mm_movemask_pd((__m128d) yes);
+  return (unsigned) PACKED(, movemask)((vec) yes);
 #else
   unsigned all_bits = 0;
   for (int k = 0; k < LANES; k++) all_bits |= (unsigned) (LANE(yes, k) != 0) << k;
@@ -140,9 +167,9 @@ INLINE vec where(yes_no yes, vec a, vec b)
 #if LANES == 1
   return yes ? a : b;
 #elif defined(SD_AVX512)
-  return _mm512_mask_blend_pd(_mm512_movepi64_mask((__m512i) yes), b, a);
+  return PACKED(512, mask_blend)(MASK(yes), b, a);
 #elif defined(SD_AVX2)
-  return _mm256_blendv_pd(b, a, (__m256d) yes);
+  return PACKED(256, blendv)(b, a, (vec) yes);
 #else
   return (vec) ((yes & (yes_no) a) | (~yes & (yes_no) b));
 #endif
@@ -152,11 +179,11 @@ INLINE vec where(yes_no yes, vec a, vec b)
 INLINE vec smaller(vec a, vec b)
 {
 #if defined(SD_AVX512)
-  return _mm512_min_pd(a, b);
+  return PACKED(512, min)(a, b);
 #elif defined(SD_AVX2)
-  return _mm256_min_pd(a, b);
+  return PACKED(256, min)(a, b);
 #elif defined(SD_SSE2)
-  return _mm_min_pd(a, b);
+  return PACKED(, min)(a, b);
 #else
   return where(a < b, a, b);
 #endif
@@ -165,11 +192,11 @@ INLINE vec smaller(vec a, vec b)
 INLINE vec larger(vec a, vec b)
 {
 #if defined(SD_AVX512)
-  return _mm512_max_pd(a, b);
+  return PACKED(512, max)(a, b);
 #elif defined(SD_AVX2)
-  return _mm256_max_pd(a, b);
+  return PACKED(256, max)(a, b);
 #elif defined(SD_SSE2)
-  return _mm_max_pd(a, b);
+  return PACKED(, max)(a, b);
 #else
   return where(a > b, a, b);
 #endif
@@ -178,7 +205,7 @@ INLINE vec larger(vec a, vec b)
 /* Appends those of j that are hits to a list, which has room for LANES more; returns how many. */
 INLINE int keep(int *list, const int j[LANES], unsigned hits)
 {
-#ifdef SD_AVX512
+#if defined(SD_AVX512) && LANES == 8
   const __m256i all_j = _mm256_loadu_si256((const __m256i *) j);
   _mm256_storeu_si256((__m256i *) list, _mm256_maskz_compress_epi32((__mmask8) hits, all_j));
   return __builtin_popcount(hits);
@@ -212,7 +239,7 @@ INLINE int keep_next(int *list, int j, unsigned hits)
 INLINE vec root(vec a)
 {
 #ifdef SD_AVX512
-  return _mm512_sqrt_pd(a);
+  return PACKED(512, sqrt)(a);
 #else
   return (vec) LANEWISE(ROOT_OF, a); /* the compiler makes one instruction of these */
 #endif
@@ -220,26 +247,36 @@ INLINE vec root(vec a)
 
 /* 1/sqrt(a), for a from 1e-30 to 1e30. A first guess y with the error e = 1 - a y^2, then
  * y (1-e)^(-1/2) by its series: up to e^3 with AVX-512, which guesses 14 bits; up to e^4 with the
- * guess in single precision that AVX2 has, |e| < 8e-4. */
+ * guess in single precision that AVX2 has, |e| < 8e-4. Of floats up to e and to e^2. */
 INLINE vec inverse_root(vec a)
 {
-#if defined(SD_AVX512)
+#if defined(SD_SINGLE) && defined(SD_AVX512)
+  const vec y = _mm512_rsqrt14_ps(a), e = 1.0f - a * (y * y);
+  return y + y * e * 0.5f;
+#elif defined(SD_SINGLE) && defined(SD_AVX2)
+  const vec y = _mm256_rsqrt_ps(a), e = 1.0f - a * (y * y);
+  return y + y * e * (0.5f + e * 0.375f);
+#elif defined(SD_AVX512)
   const vec y = _mm512_rsqrt14_pd(a), e = 1.0 - a * (y * y);
   return y + y * e * (0.5 + e * (0.375 + e * 0.3125));
 #elif defined(SD_AVX2)
   const vec y = _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(a))), e = 1.0 - a * (y * y);
   return y + y * e * (0.5 + e * (0.375 + e * (0.3125 + e * (35.0 / 128.0))));
 #else
-  return 1.0 / root(a);
+  return all(1.0) / root(a);
 #endif
 }
 
 /* The sum over the lanes */
-INLINE double total(vec a)
+INLINE real total(vec a)
 {
-  double sum = 0.0;
+#if defined(SD_SINGLE) && defined(SD_AVX512)
+  return _mm512_reduce_add_ps(a);
+#else
+  real sum = 0.0;
   for (int k = 0; k < LANES; k++) sum += LANE(a, k);
   return sum;
+#endif
 }
 
 /* --- rows of four numbers and columns --- */
@@ -251,20 +288,22 @@ INLINE double total(vec a)
 #endif
 
 #if LANES >= 4
-typedef double row4 __attribute__((vector_size(32)));
-typedef double row4_anywhere __attribute__((vector_size(32), aligned(8), may_alias));
+typedef real row4 __attribute__((vector_size(4 * sizeof(real))));
+typedef real row4_anywhere __attribute__((vector_size(4 * sizeof(real)), aligned(sizeof(real)), may_alias));
 
-INLINE row4 load4(const double *p)
+INLINE row4 load4(const real *p)
 {
   return *(const row4_anywhere *) p;
 }
 
-INLINE void store4(double *p, row4 a)
+INLINE void store4(real *p, row4 a)
 {
   *(row4_anywhere *) p = a;
 }
 
-#if LANES == 8
+#ifdef SD_SINGLE
+#include "sd_single_rows.h"
+#elif LANES == 8
 /* Two rows side by side, and the rows of a vector */
 INLINE vec beside(row4 a, row4 b)
 {
@@ -316,11 +355,14 @@ INLINE void transpose(vec r[4])
 #endif
 
 /* Column c of rows j[0 .. LANES-1], `columns` apart, becomes r[c]. */
-INLINE void gather(const double *rows, int columns, const int j[LANES], vec r[4])
+INLINE void gather(const real *rows, int columns, const int j[LANES], vec r[4])
 {
   for (int k = 0; k < 4; k++) {
     const row4 first = load4(rows + columns * (long) j[k]);
-#if LANES == 8
+#if LANES == 16
+    r[k] = four_beside(first, load4(rows + columns * (long) j[k + 4]),
+                       load4(rows + columns * (long) j[k + 8]), load4(rows + columns * (long) j[k + 12]));
+#elif LANES == 8
     r[k] = beside(first, load4(rows + columns * (long) j[k + 4]));
 #else
     r[k] = first;
@@ -330,19 +372,20 @@ INLINE void gather(const double *rows, int columns, const int j[LANES], vec r[4]
 }
 
 /* Rows j[0 .. LANES-1] += column[0..3]. One after the other: a row may be there more than once. */
-INLINE void add_to_rows(double *rows, int columns, const int j[LANES], vec column[4])
+INLINE void add_to_rows(real *rows, int columns, const int j[LANES], vec column[4])
 {
   transpose(column);
+#pragma GCC unroll 16
   for (int k = 0; k < LANES; k++) {
-    double *row = rows + columns * (long) j[k];
+    real *row = rows + columns * (long) j[k];
     store4(row, load4(row) + part(column[k % 4], k / 4));
   }
 }
 #else
-INLINE void gather(const double *rows, int columns, const int j[LANES], vec r[4])
+INLINE void gather(const real *rows, int columns, const int j[LANES], vec r[4])
 {
 #if LANES == 2
-  const double *a = rows + columns * (long) j[0], *b = rows + columns * (long) j[1];
+  const real *a = rows + columns * (long) j[0], *b = rows + columns * (long) j[1];
   for (int c = 0; c < 4; c += 2) { /* two rows of two at a time */
     const vec first = load_any(a + c), second = load_any(b + c);
     r[c] = SHUFFLE(first, second, 0, 2);
@@ -353,7 +396,7 @@ INLINE void gather(const double *rows, int columns, const int j[LANES], vec r[4]
 #endif
 }
 
-INLINE void add_to_rows(double *rows, int columns, const int j[LANES], vec column[4])
+INLINE void add_to_rows(real *rows, int columns, const int j[LANES], vec column[4])
 {
   for (int k = 0; k < LANES; k++)
     for (int c = 0; c < 4; c++) rows[columns * (long) j[k] + c] += LANE(column[c], k);

@@ -57,7 +57,7 @@ def test_a_full_disk_is_told_with_the_room_that_it_takes(tmp_path, command, room
 
 @pytest.mark.parametrize("options, said", [
     (["-D", "STOKESDYN_PLUGIN=OFF", "-D", "CMAKE_DISABLE_FIND_PACKAGE_LAPACK=ON"], "no LAPACK. Debian and Ubuntu: apt-get install libopenblas"),
-    (["-D", "STOKESDYN_PLUGIN=OFF", "-D", "fftw_include="], "no FFTW (fftw3.h, libfftw3). Debian and Ubuntu: apt-get install libfftw3-dev"),
+    (["-D", "STOKESDYN_PLUGIN=OFF", "-D", "fftw_include="], "no FFTW (fftw3.h, libfftw3, libfftw3f). Debian and Ubuntu: apt-get install libfftw3-dev"),
     (["-D", f"LAMMPS_PYTHON={sys.executable}", "-D", "LAMMPS_SOURCE_DIR=/there"], "name two LAMMPS: give one of the two"),
     (["-D", "LAMMPS_PYTHON=/no/python3"], "LAMMPS_PYTHON='/no/python3' cannot be run"),
     (["-D", "STOKESDYN_PLUGIN=OFF", "-D", "STOKESDYN_CORE_FROM=/there"], "STOKESDYN_CORE_FROM='/there' lacks /there/CMakeFiles/"),

@@ -304,12 +304,23 @@ static sd_status ew_prepare(const sd_ewald_box *box, const sd_ewald_class *all, 
   return SD_OK;
 }
 
+/* Is single precision enough for a splitting and its spheres? The tolerance may be off by its last digits.
+ * Coordinates have steps of range/2^30 then (sd_ewald_internal.h): a millionth of a radius at most, which
+ * spheres in touch feel. */
+static int floats_do(const sd_ewald *e, const sd_ewald_class *s)
+{
+  return e->tolerance >= SD_EWALD_SINGLE * (1.0 - 1e-9) && e->range <= 1e3 * sqrt(s->squares / s->count);
+}
+
 sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
                           double tolerance, sd_ewald *out)
 {
   int some;
   const sd_status status = ew_prepare(box, &sizes->all, tolerance, out, &some);
-  return some ? one_level(out, fall_for(out), &sizes->all, width, LARGEST) : status;
+  if (!some) return status;
+  const sd_status chosen = one_level(out, fall_for(out), &sizes->all, width, LARGEST);
+  out->single = floats_do(out, &sizes->all);
+  return chosen;
 }
 
 sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,

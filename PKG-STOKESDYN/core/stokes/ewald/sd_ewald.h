@@ -74,6 +74,8 @@ typedef struct {
    * (sized) or at points, where a_ref is of the sources alone */
   double band;
   int sized;
+  /* near pairs, windows, grid and its transforms are of floats (SD_EWALD_SINGLE) */
+  int single;
   /* how far ghosts must reach: range, or that of images */
   double reach;
   /* grid points of the box each way; those of an open box are an eighth of the grid, which is
@@ -100,6 +102,10 @@ typedef struct {
  * (sd_multiblob.h) */
 #define SD_EWALD_POSITIVE 0.6
 #define SD_EWALD_POSITIVE_ADDITION 0.5
+
+/* From this tolerance on sums that have no walls and draw no noise are of floats, whose own error is
+ * below a tenth of it; unless the range is a thousand radii, which few spheres in a huge box have. */
+#define SD_EWALD_SINGLE 1e-5
 
 /* The widest window; classes of radii */
 enum { SD_EWALD_MOST_POINTS = 20, SD_EWALD_OCTAVES = 10 };

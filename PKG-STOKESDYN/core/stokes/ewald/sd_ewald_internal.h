@@ -1,4 +1,5 @@
-/* Between the engine and its kernels, of which each instruction set has its own build. */
+/* Between the engine and its kernels, of which each instruction set has its own build; and each of those
+ * one for doubles and one for floats (sd_ewald.single), whose numbers are behind pointers to void. */
 #ifndef SD_EWALD_INTERNAL_H
 #define SD_EWALD_INTERNAL_H
 
@@ -18,10 +19,13 @@ typedef struct {
    * set */
   const long *first;
   const int *neighbor;
-  /* [8 (rows + 1)] x y z a, w F; the last takes the place of missing neighbours. [4 (rows + 1)] w T */
-  const double *row, *torque_row;
+  /* [8 (rows + 1)] x y z a, w F; the last takes the place of missing neighbours. [4 (rows + 1)] w T.
+   * Among floats x y z are whole numbers of 32 bits, times `unit`: a difference of two is taken
+   * modulo 2^32, more than twice the range, and is exact wherever the pair is */
+  const void *row, *torque_row;
+  double unit;
   /* [4 (rows + 1)] U, with torques [8 (rows + 1)] U, W, each and one number more; 0 before */
-  double *u;
+  void *u;
   /* range^2, a_ref^2, and the polynomials of sd_radial.h times 8 pi; degree: one of the kernels' */
   double range2, ref2;
   int degree;
@@ -83,9 +87,9 @@ typedef struct {
   double gradient[3][3], metric[6];
   const sd_spread_place *place;
   /* [width n] w F in order of place; or the velocities that come out */
-  double *F;
+  void *F;
   /* its first point on the grid; numbers from row to row and from layer to layer */
-  double *brick;
+  void *brick;
   int lo[3];
   long row, layer;
 } sd_spreading;
@@ -112,22 +116,32 @@ typedef long sd_near_search(const double *centre, long stride, const int *ranges
 enum { SD_GROUP_POINTS = 12, SD_GROUP_ROW = 40 };
 
 struct sd_ewald_kernels {
-  sd_near_search *search;
+  /* of a number */
+  size_t bytes;
   void (*near_part)(const sd_near_part *p);
-  void (*image_part)(const sd_image_part *p);
-  /* u [36] += scale B F [36] of a symmetric block B [36][SD_GROUP_ROW] */
-  void (*own_block)(const double *B, double scale, const double *F, double *u);
   void (*spread)(const sd_spreading *s);
   void (*interpolate)(const sd_spreading *s);
   /* one row along z of the three transforms, u = B (f - k (k.f)/k^2): B [half], k [3] at its
    * start, dkz */
-  void (*periodic_row)(double *const *f, const double *B, const double *k, double dkz, int half);
+  void (*periodic_row)(void *const *f, const void *B, const double *k, double dkz, int half);
   /* u = K f: K [6][half] xx yy zz xy xz yz, signs of kx and ky */
-  void (*open_row)(double *const *f, const double *K, double sx, double sy, int half);
-  /* the same above a wall, u and u' of sd_image_kernel.h */
+  void (*open_row)(void *const *f, const void *K, double sx, double sy, int half);
+  /* Of doubles alone, NULL of floats: who is near; u [36] += scale B F [36] of a symmetric block
+   * B [36][SD_GROUP_ROW]; near images; rows above a wall, u and u' of sd_image_kernel.h */
+  sd_near_search *search;
+  void (*own_block)(const double *B, double scale, const double *F, double *u);
+  void (*image_part)(const sd_image_part *p);
   void (*image_rows)(const sd_image_rows *r);
 };
 
 SD_KERNEL_TABLES(struct sd_ewald_kernels, sd_ewald);
+SD_KERNEL_TABLES(struct sd_ewald_kernels, sd_ewald_single);
+
+/* The kernels of a splitting, of the best instruction set there is */
+static inline const struct sd_ewald_kernels *sd_ewald_kernels_for(const sd_ewald *e)
+{
+  const sd_isa isa = sd_isa_of(SD_ISA_BEST);
+  return e->single ? SD_KERNELS_OF(sd_ewald_single, plain, isa) : SD_KERNELS_OF(sd_ewald, plain, isa);
+}
 
 #endif

@@ -48,6 +48,7 @@ static sd_status choose_open(const sd_ewald_box *box, const sd_ewald_sizes *thos
   }
   const double tighter = width == 6 ? 0.9 : tolerance > 5e-4 ? 0.5 : 0.3;
   const sd_status status = sd_ewald_choose(box, &sizes, width, tighter * tolerance, out);
+  out->single = 0;
   out->a_ref = 0.0;
   return status;
 }
@@ -244,7 +245,8 @@ static sd_status convolve(sd_field *f, const sd_field_sources *s, const sd_world
   if (status == SD_OK) status = sd_ewald_waves_find(&f->waves, &ours, which, (int) n, brick);
   if (status == SD_OK) status = sd_ewald_waves_place_whole(&f->waves);
   status = sd_world_agree(world, status);
-  if (status == SD_OK) status = sd_ewald_waves_convolve(&f->waves, &ours, F, u);
+  if (status == SD_OK) sd_ewald_waves_load(&f->waves, &ours, F, u);
+  if (status == SD_OK) status = sd_ewald_waves_convolve(&f->waves, u);
   free(which);
   return status;
 }

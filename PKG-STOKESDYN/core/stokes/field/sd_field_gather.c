@@ -57,7 +57,8 @@ static void sum_along_z(const gathering *q, const sd_field_place *z, int planes)
   for (int pair = 0; pair < n[0]; pair += 2) /* two share a line of the cache in the planes */
     for (int j = 0; j < n[1]; j++)
       for (int i = pair; i < pair + 2 && i < n[0]; i++)
-        q->kernels->windows(z, planes, q->w->window.points, s->brick + i * s->layer + j * s->row, 3,
+        q->kernels->windows(z, planes, q->w->window.points,
+                            (const double *) s->brick + i * s->layer + j * s->row, 3,
                             s->row, q->planes + 4L * (j * (long) n[0] + i), size);
 }
 

@@ -9,6 +9,7 @@
 #include "sd_ewald_pairs.h"
 #include "sd_ewald_waves.h"
 #include "sd_rank_spheres.h"
+#include "sd_real.h"
 
 typedef struct {
   /* what the tables are made for */
@@ -34,8 +35,7 @@ static sd_status me_make_tables(ewald *e, const sd_mobility_scene *s)
     e->ready = 1;
     return SD_OK;
   }
-  const struct sd_ewald_kernels *kernels =
-      SD_KERNELS_OF(sd_ewald, plain, sd_isa_of(SD_ISA_BEST));
+  const struct sd_ewald_kernels *kernels = sd_ewald_kernels_for(how);
   sd_ewald_pairs_create(&e->pairs, how, kernels, e->width);
   if (how->images.wall.sign) sd_ewald_image_pairs_create(&e->image_pairs, how, kernels);
   sd_radial_tail(how, e->tail);
@@ -127,18 +127,27 @@ static sd_status sums_of(const ewald *e, const double *F, double *sums)
   return sd_world_sum(&e->world, sums, 9);
 }
 
-/* u += w (mean of what is beyond the range) */
-static void add_means(const ewald *e, const double *S, double *u)
+/* u += w (mean of what is beyond the range), of one sphere */
+static void add_mean(const ewald *e, long j, double over_V, const double *S, double *u)
+{
+  const long m = e->width;
+  const double w = e->here.spheres.w[j], b = sd_ewald_b(&e->ewald, e->here.spheres.a[j]), *C = e->tail;
+  for (int d = 0; d < 3; d++)
+    u[m * j + d] += w * over_V * ((C[0] - b * C[1]) * S[d] - (C[1] - b * C[2]) * S[3 + d]);
+  for (int d = 3; d < m; d++) u[m * j + d] += w * 0.25 * C[1] * over_V * S[3 + d];
+}
+
+/* u += w (waves, and the mean of what is beyond the range of a periodic box); rows NULL: no waves */
+static void add_far(const ewald *e, const void *rows, const double *sums, double *u)
 {
   const sd_rank_spheres *here = &e->here;
   const long m = e->width;
-  const double over_V = 1.0 / sd_ewald_volume(&e->ewald.box), *C = e->tail;
+  const double over_V = 1.0 / sd_ewald_volume(&e->ewald.box);
+  const size_t bytes = e->waves.kernels->bytes;
   for (int i = 0; i < here->own; i++) {
     const long j = here->sphere[i];
-    const double w = here->spheres.w[j], b = sd_ewald_b(&e->ewald, here->spheres.a[j]);
-    for (int d = 0; d < 3; d++)
-      u[m * j + d] += w * over_V * ((C[0] - b * C[1]) * S[d] - (C[1] - b * C[2]) * S[3 + d]);
-    for (int d = 3; d < m; d++) u[m * j + d] += w * 0.25 * C[1] * over_V * S[3 + d];
+    for (int d = 0; d < m && rows; d++) u[m * j + d] += here->spheres.w[j] * sd_number(rows, bytes, m * i + d);
+    if (e->ewald.box.periodic) add_mean(e, j, over_V, sums, u);
   }
 }
 
@@ -155,12 +164,6 @@ static sd_status me_near_part(ewald *e, const double *F, double *u, double *sums
   return SD_OK;
 }
 
-/* Free between two products of the near part, and longer than a row for each of our spheres */
-static double *rows_of_waves(const ewald *e)
-{
-  return e->pairs.u;
-}
-
 static void clear(const ewald *e, double *u)
 {
   memset(u, 0, sizeof(double) * (size_t) e->width * (size_t) e->here.n);
@@ -169,15 +172,16 @@ static void clear(const ewald *e, double *u)
 static sd_status me_apply(void *state, const double *F, double *u)
 {
   ewald *e = state;
-  double sums[9], *rows = rows_of_waves(e);
+  double sums[9];
   if (!(e->ewald.count > 0.0)) {
     clear(e, u);
     return SD_OK;
   }
   sd_status status = me_near_part(e, F, u, sums);
-  if (status == SD_OK) status = sd_ewald_waves_apply(&e->waves, &e->here.spheres, F, rows);
-  if (status == SD_OK) sd_rank_spheres_add(&e->here, rows, u);
-  if (status == SD_OK && e->ewald.box.periodic) add_means(e, sums, u);
+  if (status != SD_OK) return status;
+  void *rows = sd_ewald_pairs_rows(&e->pairs);
+  status = sd_ewald_waves_apply(&e->waves, rows);
+  if (status == SD_OK) add_far(e, rows, sums, u);
   return status;
 }
 
@@ -195,17 +199,17 @@ static sd_status apply_rest(void *state, const double *F, double *u)
   ewald *e = state;
   double sums[9];
   const sd_status status = me_near_part(e, F, u, sums);
-  if (status == SD_OK) add_means(e, sums, u);
+  if (status == SD_OK) add_far(e, NULL, sums, u);
   return status;
 }
 
 static sd_status draw(void *state, const sd_random_key *key, double *u)
 {
   ewald *e = state;
+  void *rows = e->pairs.u; /* free between two products */
   clear(e, u);
-  double *rows = rows_of_waves(e);
   const sd_status status = sd_ewald_waves_draw(&e->waves, key, rows);
-  if (status == SD_OK) sd_rank_spheres_add(&e->here, rows, u);
+  if (status == SD_OK) sd_ewald_waves_add(&e->waves, &e->here.spheres, rows, u);
   return status;
 }
 

@@ -35,8 +35,7 @@ enum { SPARE = 16 };
 
 static sd_status le_make_tables(levels *e, const sd_mobility_scene *s)
 {
-  const struct sd_ewald_kernels *kernels =
-      SD_KERNELS_OF(sd_ewald, plain, sd_isa_of(SD_ISA_BEST));
+  const struct sd_ewald_kernels *kernels = sd_ewald_kernels_for(&s->how.second->split);
   e->second = *s->how.second;
   e->width = s->how.width;
   sd_ewald_large_pairs_create(&e->pairs, &e->second, e->width);
@@ -119,7 +118,7 @@ static sd_status le_sums(const levels *e, const double *F, double *sums)
   return sd_world_sum(&e->world, sums, 18);
 }
 
-/* u += w (waves, and the mean of what is beyond the range): small spheres have that of one another
+/* u += w (mean of what is beyond the range): small spheres have that of one another
  * already */
 static void le_add_far(const levels *e, const double *sums, double *u)
 {
@@ -132,7 +131,6 @@ static void le_add_far(const levels *e, const double *sums, double *u)
     const long j = e->sphere[i];
     const double w = e->spheres.w[j], a = e->spheres.a[j], b = sd_ewald_b(&e->second.split, a);
     const double *S = a < e->second.from ? sums + 9 : all;
-    for (int d = 0; d < m; d++) u[m * j + d] += w * e->rows[m * i + d];
     for (int d = 0; d < 3; d++)
       u[m * j + d] += w * over_V * ((C[0] - b * C[1]) * S[d] - (C[1] - b * C[2]) * S[3 + d]);
     for (int d = 3; d < m; d++) u[m * j + d] += w * 0.25 * C[1] * over_V * S[3 + d];
@@ -147,7 +145,10 @@ static sd_status le_apply(void *state, const double *F, double *u)
   if (status == SD_OK && e->second.split.box.periodic) status = le_sums(e, F, sums);
   if (status == SD_OK)
     status = sd_ewald_large_pairs_apply(&e->pairs, &e->spheres, e->sphere, &e->world, F, u);
-  if (status == SD_OK) status = sd_ewald_waves_apply(&e->waves, &e->spheres, F, e->rows);
+  if (status != SD_OK) return status;
+  sd_ewald_waves_load(&e->waves, &e->spheres, F, e->rows);
+  status = sd_ewald_waves_apply(&e->waves, e->rows);
+  if (status == SD_OK) sd_ewald_waves_add(&e->waves, &e->spheres, e->rows, u);
   if (status == SD_OK) le_add_far(e, sums, u);
   return status;
 }

@@ -39,7 +39,7 @@ static sd_status make_tables(slab *s, const sd_mobility_scene *scene)
     s->ready = 1;
     return SD_OK;
   }
-  const struct sd_ewald_kernels *kernels = SD_KERNELS_OF(sd_ewald, plain, sd_isa_of(SD_ISA_BEST));
+  const struct sd_ewald_kernels *kernels = sd_ewald_kernels_for(&how->ewald);
   const struct sd_columns_kernels *columns =
       SD_KERNELS_OF(sd_columns, plain, sd_isa_of(SD_ISA_BEST));
   sd_ewald_pairs_create(&s->pairs, &how->ewald, kernels, 3);
@@ -164,7 +164,7 @@ static sd_status apply(void *state, const double *F, double *u)
 {
   slab *s = state;
   sd_rank_spheres *here = &s->here;
-  double sums[6], *rows = s->pairs.u; /* free after the near part, and longer than our rows */
+  double sums[6];
   if (!(s->slab.ewald.count > 0.0)) {
     memset(u, 0, 3 * sizeof(double) * (size_t) s->here.n);
     return SD_OK;
@@ -175,9 +175,10 @@ static sd_status apply(void *state, const double *F, double *u)
   sd_ewald_pairs_apply(&s->pairs, here->n, F, here->ghosts, u);
   for (int w = 0; w < sd_slab_many_walls(&s->slab.walls); w++)
     sd_ewald_image_pairs_apply(s->images + w, here->n, F, here->ghosts, u);
-  status = sd_ewald_waves_apply(&s->waves, &here->spheres, F, rows);
+  void *rows = sd_ewald_pairs_rows(&s->pairs);
+  status = sd_ewald_waves_apply(&s->waves, rows);
   if (status != SD_OK) return status;
-  sd_rank_spheres_add(here, rows, u);
+  sd_ewald_waves_add(&s->waves, &here->spheres, rows, u);
   add_means(s, sums, u);
   return SD_OK;
 }

@@ -31,15 +31,6 @@ sd_status sd_rank_spheres_refresh(sd_rank_spheres *r, const sd_world *world, con
   return world->refresh ? world->refresh(world->ctx, F, r->ghosts, r->width) : SD_OK;
 }
 
-void sd_rank_spheres_add(const sd_rank_spheres *r, const double *rows, double *u)
-{
-  const long m = r->width;
-  for (int i = 0; i < r->own; i++) {
-    const long j = r->sphere[i];
-    for (int d = 0; d < m; d++) u[m * j + d] += r->spheres.w[j] * rows[m * i + d];
-  }
-}
-
 void sd_rank_spheres_free(sd_rank_spheres *r)
 {
   free(r->sphere);

@@ -34,8 +34,6 @@ sd_status sd_rank_spheres_take(sd_rank_spheres *r, const sd_spheres *spheres, in
 void sd_rank_spheres_list(sd_rank_spheres *r, const sd_ewald_pairs *pairs);
 /* r->ghosts = F of the ghosts; SD_OK or as world->refresh */
 sd_status sd_rank_spheres_refresh(sd_rank_spheres *r, const sd_world *world, const double *F);
-/* u [width n] += w rows [width own] */
-void sd_rank_spheres_add(const sd_rank_spheres *r, const double *rows, double *u);
 void sd_rank_spheres_free(sd_rank_spheres *r);
 
 SD_END_C

@@ -105,6 +105,79 @@ static void spreading_and_interpolation_agree(void **state)
   free(brick);
 }
 
+/* Kernels of floats, of each instruction set, against those of doubles: pairs, of which some overlap and two are at one point */
+static void near_parts_of_floats_are_those_of_doubles(void **state)
+{
+  (void) state;
+  const sd_ewald_box box = {.periodic = 1, .edge = {12, 12, 12}};
+  for (int equal = 0; equal < 2; equal++)
+    for (int width = 3; width <= 6; width += 3)
+      for (int digits = 1; digits <= 5; digits++) {
+        cloud c = make(5, equal);
+        memcpy(c.x + 3, c.x, 3 * sizeof(double));
+        const sd_spheres spheres = {c.x, c.a, c.w};
+        const sd_groups none = {0};
+        const sd_ewald how = periodic_choose(&box, c.a, N, width, pow(10.0, -digits));
+        assert_true(how.single);
+        double expected[6 * N], u[6 * N], scale = 0.0;
+        for (int k = -2; k < 3; k++) {
+          const sd_isa isa = k < 0 ? SD_ISA_PLAIN : sets[k];
+          if (!sd_isa_supported(isa)) continue;
+          sd_ewald_pairs p = {0};
+          sd_ewald_pairs_create(&p, &how, k == -2 ? SD_KERNELS_OF(sd_ewald, plain, isa) : SD_KERNELS_OF(sd_ewald_single, plain, isa),
+                                width);
+          assert_int_equal(sd_ewald_pairs_place(&p, &spheres, &none, N - 20, N), SD_OK); /* the last are ghosts */
+          sd_ewald_pairs_apply(&p, N - 20, c.F, c.F + width * (N - 20), k == -2 ? expected : u);
+          sd_ewald_pairs_free(&p);
+          for (int i = 0; i < width * (N - 20); i++) {
+            if (k == -2) scale = fmax(scale, fabs(expected[i]));
+            else CHECK_NEAR(u[i], expected[i], 1e-6 * scale);
+          }
+        }
+        assert_true(scale > 0.0);
+      }
+}
+
+static void windows_of_floats_are_those_of_doubles(void **state)
+{
+  (void) state;
+  const cloud c = make(3, 0);
+  const size_t numbers = (size_t) ROW * SIDE * SIDE + 64;
+  double *expected = malloc(sizeof(double) * numbers), first[6 * N];
+  float *brick = malloc(sizeof(float) * numbers), F[6 * N];
+  for (int points = 3; points <= 9; points++)
+    for (int terms = 1; terms <= 4; terms *= 2) {
+      const int width = terms == 4 ? 6 : 3;
+      sd_window w;
+      sd_spread_place place[N];
+      sd_window_fit(points, 2.3 * points, 1e-5, &w);
+      sd_spreading s = spheres_on_a_brick(&c, place, &w, terms, width);
+      double largest = 0.0, fastest = 0.0;
+      memset(expected, 0, sizeof(double) * numbers);
+      memcpy(first, c.F, sizeof(first));
+      s.brick = expected;
+      s.F = first;
+      SD_KERNELS_OF(sd_ewald, plain, SD_ISA_PLAIN)->spread(&s);
+      SD_KERNELS_OF(sd_ewald, plain, SD_ISA_PLAIN)->interpolate(&s);
+      for (size_t g = 0; g < numbers; g++) largest = fmax(largest, fabs(expected[g]));
+      for (int i = 0; i < width * N; i++) fastest = fmax(fastest, fabs(first[i]));
+      for (int k = -1; k < 3; k++) {
+        const sd_isa isa = k < 0 ? SD_ISA_PLAIN : sets[k];
+        if (!sd_isa_supported(isa)) continue;
+        for (int i = 0; i < width * N; i++) F[i] = (float) c.F[i];
+        memset(brick, 0, sizeof(float) * numbers);
+        s.brick = brick;
+        s.F = F;
+        SD_KERNELS_OF(sd_ewald_single, plain, isa)->spread(&s);
+        for (size_t g = 0; g < numbers; g++) CHECK_NEAR(brick[g], expected[g], 1e-6 * largest);
+        SD_KERNELS_OF(sd_ewald_single, plain, isa)->interpolate(&s);
+        for (int i = 0; i < width * N; i++) CHECK_NEAR(F[i], first[i], 1e-6 * fastest);
+      }
+    }
+  free(expected);
+  free(brick);
+}
+
 static void rows_of_waves_agree(void **state)
 {
   (void) state;
@@ -118,7 +191,7 @@ static void rows_of_waves_agree(void **state)
   for (int l = 0; l < 3; l++)
     for (int open = 0; open < 2 && sd_isa_supported(sets[l]); open++) {
       for (int turn = 0; turn < 2; turn++) {
-        double *rows[3] = {u[turn][0], u[turn][1], u[turn][2]};
+        void *rows[3] = {u[turn][0], u[turn][1], u[turn][2]};
         const sd_isa isa = turn ? sets[l] : SD_ISA_PLAIN;
         const struct sd_ewald_kernels *kernels = SD_KERNELS_OF(sd_ewald, plain, isa);
         memcpy(u[turn], f, sizeof(f));
@@ -137,6 +210,8 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(near_parts_agree),
       cmocka_unit_test(spreading_and_interpolation_agree),
+      cmocka_unit_test(near_parts_of_floats_are_those_of_doubles),
+      cmocka_unit_test(windows_of_floats_are_those_of_doubles),
       cmocka_unit_test(rows_of_waves_agree),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -386,7 +386,7 @@ static verdict t040_reciprocity(const climber *row)
       for (int q = 0; q < p; q++) worst = fmax(worst, fabs(S[p * n + q] - S[q * n + p]));
     free(S);
   }
-  return within(worst, 1e-11);
+  return within(worst, 1e-11 + row->rounding);
 }
 
 /* Three spheres in a row of which the first and the last do not see each other: 1 - sqrt(2) c, c > 0.71 of those that overlap */
@@ -473,7 +473,7 @@ static verdict t070_linearity(const climber *row)
   for (int l = 0; l < 3; l++) assert_int_equal(sd_mobility_apply(&e.p.m, F[l], u[l]), SD_OK);
   free_alone(&e);
   for (int k = 0; k < numbers_of(&s); k++) worst = fmax(worst, fabs(u[2][k] - 2.0 * u[0][k] + 3.0 * u[1][k]) * drag_of(&s, k));
-  return within(worst, 1e-12);
+  return within(worst, 1e-12 + row->rounding);
 }
 
 typedef struct {
@@ -511,7 +511,7 @@ static verdict t080_ranks(const climber *row)
     for (int k = 0; k < numbers_of(&s); k++) worst = fmax(worst, fabs(all->u[k] - one[k]) * drag_of(&s, k));
     munmap(all, sizeof(shared));
   }
-  return within(worst, 1e-11);
+  return within(worst, 1e-11 + row->rounding);
 }
 
 /* What is drawn has the covariance of what the product has more than the rest: of white numbers L^-1 u, L its Cholesky factor, the
@@ -627,7 +627,7 @@ static verdict t120_torn_box(const climber *row)
   double *S = matrix(row, &s), *B = matrix(row, &torn);
   for (int k = 0; k < numbers_of(&s) * numbers_of(&s); k++) worst = fmax(worst, fabs(S[k] - B[k]));
   free(S), free(B);
-  return within(worst, 1e-10);
+  return within(worst, 1e-10 + row->rounding);
 }
 
 typedef struct {

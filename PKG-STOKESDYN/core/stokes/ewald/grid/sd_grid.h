@@ -1,4 +1,4 @@
-/* A grid of vectors over all ranks, and its Fourier transform: three real fields forth, a
+/* A grid of vectors over all ranks, of doubles or of floats, and its Fourier transform: three real fields forth, a
  * multiplication at each wave vector, three fields back.
  *
  * Each rank has a brick, the grid points that its own spheres reach, three numbers per point,
@@ -21,7 +21,7 @@
 #ifndef SD_GRID_H
 #define SD_GRID_H
 
-#include <fftw3.h>
+#include <stddef.h>
 
 #include "sd_status.h"
 #include "sd_world.h"
@@ -47,28 +47,33 @@ typedef void sd_grid_sweep(void *ctx, int y, double *const *fields);
 typedef struct {
   sd_world world;
   int me, ranks;
+  /* of a number; pointers to void are to numbers, or to pairs of them, which are complex */
+  size_t bytes;
+  const struct sd_grid_fields *fields;
   /* points of the transform, of its occupied part, and complex numbers along z */
   int size[3], occupied[3], half;
   int rows, columns;
   /* this rank's part of each sd_grid_part: first and end */
   int own[4][2];
   /* three planes at work, of points or of wave numbers, and one beside them */
-  fftw_complex *plane[3], *beside;
-  /* [planes of x] wave numbers of y and our z: [3][size y][depth], depth of our z. Each is in the
+  void *plane[3], *beside;
+  /* [planes of x] wave numbers of y and our z: [3][size y][depth], depth of our z; a field begins at
+   * 16 bytes, as vectors of FFTW do. Each is in the
    * layer of the brick that it has been made from, which is free then; in `spare` where there is none
    * of its size */
-  fftw_complex **slab;
+  void **slab;
   double *spare;
   size_t spare_room;
-  fftw_plan z_forth, z_back, y_forth, y_back, x_forth, x_back;
+  /* FFTW's, of lines along z, y and x forth and back */
+  void *z_forth, *z_back, *y_forth, *y_back, *x_forth, *x_back;
   /* brick: first point and number of points; rows along z of 3 numbers a point */
   int lo[3], n[3];
   long row, layer;
-  double *brick;
+  void *brick;
   size_t brick_room;
   /* [occupied x] of each plane of x, NULL: none; three more planes at work */
   double *height;
-  fftw_complex *raised[3];
+  void *raised[3];
   /* NULL: nothing but the product at each wave vector */
   sd_grid_sweep *sweep;
   void *sweep_ctx;
@@ -76,7 +81,7 @@ typedef struct {
   sd_piece *out, *in;
   int outs, ins;
   size_t out_room, in_room;
-  /* numbers to and from each rank: of pieces, of the turn in rows, of that in columns; 6 [ranks] */
+  /* doubles to and from each rank, as which numbers travel: of pieces, of the turn in rows, of that in columns; 6 [ranks] */
   int *counts;
   /* messages: what is in one goes to the other */
   double *message[2];
@@ -86,15 +91,16 @@ typedef struct {
 /* Multiplies the three fields at the wave vectors of one y and our z: plane [3][size x][depth]
  * complex. With heights three more, plane [6]: of each field times the height; and of what comes of
  * these the product with the height is added to what comes of the first three. */
-typedef void sd_grid_multiply(void *ctx, int y, double *const *plane);
+typedef void sd_grid_multiply(void *ctx, int y, void *const *plane);
 
-/* Rows, columns and plans. SD_OK; SD_ENOMEMORY, also for turns of more numbers than an int counts. */
-sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, const sd_world *world);
+/* Rows, columns and plans; bytes: of a double, or of a float. SD_OK; SD_ENOMEMORY, also for turns of more numbers than an int counts. */
+sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, size_t bytes,
+                         const sd_world *world);
 
 /* From now on with heights, one for each plane of x [occupied x]. SD_OK or SD_ENOMEMORY. */
 sd_status sd_grid_raise(sd_grid *g, const double *height);
 
-/* From now on with a sweep. SD_OK or SD_ENOMEMORY. */
+/* From now on with a sweep; of doubles alone. SD_OK or SD_ENOMEMORY. */
 sd_status sd_grid_add_sweep(sd_grid *g, sd_grid_sweep *sweep, void *ctx);
 
 /* Of the points of all bricks, as below, how many would be in the pencils of their own rank if the
@@ -105,6 +111,9 @@ double sd_grid_at_home(const sd_grid *g, const int *bricks, int d);
  * each way, which may be 0. SD_OK; SD_ENOMEMORY as above. */
 sd_status sd_grid_place(sd_grid *g, const int *bricks);
 
+/* Numbers of the brick, with what vectors read and write beyond the last point */
+size_t sd_grid_brick_numbers(const sd_grid *g);
+
 /* Brick [points][3] of forces -> velocities. The transforms are not normalised. SD_OK or what
  * exchange said. */
 sd_status sd_grid_convolve(sd_grid *g, sd_grid_multiply *multiply, void *ctx);
@@ -113,7 +122,8 @@ sd_status sd_grid_convolve(sd_grid *g, sd_grid_multiply *multiply, void *ctx);
  * at its first number, the next `stride` further. */
 typedef void sd_grid_fill(void *ctx, int x, int y, int y_end, long stride, double *const *fields);
 
-/* The same from values that are known on the grid, in place of what bricks hold; brick out */
+/* The same from values that are known on the grid, in place of what bricks hold; brick out. Of doubles
+ * alone */
 sd_status sd_grid_convolve_values(sd_grid *g, sd_grid_fill *fill, void *fill_ctx,
                                   sd_grid_multiply *multiply, void *ctx);
 

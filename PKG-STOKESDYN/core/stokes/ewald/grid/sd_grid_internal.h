@@ -1,5 +1,6 @@
 /* Between the parts of sd_grid.h: which rank has which pencils and how long messages are
- * (sd_grid_share.c), which boxes of bricks go where (sd_grid_pieces.c), and the rest of it. */
+ * (sd_grid_share.c), which boxes of bricks go where (sd_grid_pieces.c), the way of the numbers
+ * (sd_grid_fields.c, for doubles and for floats), and the memory of it. */
 #ifndef SD_GRID_INTERNAL_H
 #define SD_GRID_INTERNAL_H
 
@@ -22,12 +23,29 @@ int sd_grid_own(const sd_grid *g, sd_grid_part what);
 
 enum { PIECES_TO, PIECES_FROM, ROW_TO, ROW_FROM, COLUMN_TO, COLUMN_FROM };
 
-/* So many numbers more to or from a rank, after `all` others of the message; 0: more than an int
- * counts */
+/* So many numbers more to or from a rank, after `all` others of the message, and what fills them up to
+ * whole doubles; 0: more than an int counts */
 int sd_grid_count(const sd_grid *g, int which, int rank, long numbers, long *all);
 /* Of both turns; 0 as above */
 int sd_grid_count_turns(const sd_grid *g);
 size_t sd_grid_largest_message(const sd_grid *g);
+
+/* --- numbers --- */
+
+/* Complex numbers of a field of the slab */
+long sd_grid_slab_field(const sd_grid *g);
+
+/* Numbers of one precision */
+struct sd_grid_fields {
+  /* plans of g, from its planes; 0: no memory */
+  int (*plan)(sd_grid *g);
+  void (*forget)(sd_grid *g);
+  sd_status (*convolve)(sd_grid *g, sd_grid_multiply *multiply, void *ctx);
+  sd_status (*convolve_values)(sd_grid *g, sd_grid_fill *fill, void *fill_ctx,
+                               sd_grid_multiply *multiply, void *ctx);
+};
+
+extern const struct sd_grid_fields sd_grid_doubles, sd_grid_floats;
 
 /* --- pieces --- */
 

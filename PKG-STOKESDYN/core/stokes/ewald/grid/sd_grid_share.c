@@ -69,12 +69,13 @@ int sd_grid_own(const sd_grid *g, sd_grid_part what)
 
 /* --- messages --- */
 
-/* Numbers of a message to or from a rank, after `all` others; 0: more than an int counts */
 int sd_grid_count(const sd_grid *g, int which, int rank, long numbers, long *all)
 {
-  *all += numbers;
+  const long in_double = (long) (sizeof(double) / g->bytes);
+  const long doubles = (numbers + in_double - 1) / in_double;
+  *all += doubles * in_double;
   if (*all > INT_MAX) return 0;
-  g->counts[which * g->ranks + rank] += (int) numbers;
+  g->counts[which * g->ranks + rank] += (int) doubles;
   return 1;
 }
 

@@ -134,12 +134,12 @@ static sd_status visit_group(void *ctx, int row, int ranges, long most)
     return SD_ENOMEMORY;
   double x[3];
   sd_ewald_cells_at(c, row, x);
-  const int found = (int) p->kernels->search(c->centre, c->rows, c->range, ranges, x, c->reach * c->reach, g->near);
+  const int found = (int) p->doubles->search(c->centre, c->rows, c->range, ranges, x, c->reach * c->reach, g->near);
   const int many = ranges_of_points(f, row, found);
   long points = SD_GROUP_POINTS;
   for (int k = 1; k < many; k++) points += g->range[2 * k + 1] - g->range[2 * k];
   for (int k = g->first[row]; k < g->first[row + 1]; k++) {
-    if (!sd_extend(&p->neighbor, sizeof(int), (size_t) (f->many + points + 2 * SD_FULL), &p->neighbor_room))
+    if (!sd_extend(&p->neighbor, sizeof(int), (size_t) (f->many + points + 3 * SD_FULL), &p->neighbor_room))
       return SD_ENOMEMORY;
     g->range[0] = k + 1 < g->range[1] ? k + 1 : g->range[1];
     p->first[k] = f->many;
@@ -150,7 +150,7 @@ static sd_status visit_group(void *ctx, int row, int ranges, long most)
 
 /* --- what the points of a group do to each other --- */
 
-/* Column by column what the kernel of pairs makes of the rows of a group for unit forces. */
+/* Column by column what the kernel of pairs makes of the rows of a group for unit forces, in doubles. */
 static void make_block(const sd_ewald_pairs *p, int first, int points, double *block)
 {
   sd_near_part part = sd_ewald_pairs_part(p);
@@ -162,8 +162,12 @@ static void make_block(const sd_ewald_pairs *p, int first, int points, double *b
     for (int j = k + 1; j < points; j++) neighbor[start[k + 1]++] = j;
     while (start[k + 1] % SD_FULL) neighbor[start[k + 1]++] = points;
   }
-  memcpy(row, p->row + 8 * (long) first, sizeof(double) * 8 * (size_t) points);
-  memcpy(row + 8 * points, p->row + 8 * (long) p->rows, 8 * sizeof(double));
+  memset(row, 0, sizeof(row));
+  for (int k = 0; k <= points; k++) {
+    const long i = k < points ? p->sphere[first + k] : -1;
+    for (int d = 0; d < 3; d++) row[8 * k + d] = i < 0 ? SD_NOWHERE : p->scale * p->spheres.x[3 * i + d];
+    row[8 * k + 3] = i < 0 ? 0.0 : p->scale * p->spheres.a[i];
+  }
   part.rows = points;
   part.first = start;
   part.neighbor = neighbor;
@@ -174,7 +178,7 @@ static void make_block(const sd_ewald_pairs *p, int first, int points, double *b
     for (int k = 0; k < points; k++)
       for (int d = 0; d < 3; d++) row[8 * k + 4 + d] = 3 * k + d == j;
     memset(u, 0, sizeof(u));
-    p->kernels->near_part(&part);
+    p->doubles->near_part(&part);
     for (int k = 0; k < points; k++)
       for (int d = 0; d < 3; d++)
         block[SD_GROUP_ROW * j + 3 * k + d] = p->scale / (8.0 * SD_PI) * u[4 * k + d];
@@ -221,6 +225,6 @@ void sd_ewald_groups_apply(const sd_ewald_pairs *p, const double *F, double *u)
   for (int k = 0; k < g->own; k++) {
     const long i = g->sphere[k];
     const double w = p->spheres.w[i];
-    p->kernels->own_block(g->block + COLUMNS * SD_GROUP_ROW * (long) g->form[k], w * w, F + 3 * i, u + 3 * i);
+    p->doubles->own_block(g->block + COLUMNS * SD_GROUP_ROW * (long) g->form[k], w * w, F + 3 * i, u + 3 * i);
   }
 }

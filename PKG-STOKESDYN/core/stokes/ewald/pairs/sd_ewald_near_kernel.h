@@ -1,6 +1,7 @@
 /* Kernels of the near part: the block of a pair (sd_tensor_lanes.h) less the wave part of the same
  * pair in open space, polynomials in t = 2 r^2/range^2 - 1. Included by sd_ewald_kernels.c. */
 
+#ifndef SD_SINGLE
 /* The lanes beyond the end, of other rows, are cut off; centres have room for them. */
 INLINE long search_range(const double *px, long stride, int begin, int end, const vec *x, vec most,
                          int *list)
@@ -27,8 +28,33 @@ static long search(const double *centre, long stride, const int *ranges, int cou
   return many;
 }
 
+/* A coordinate of one place less that of others */
+INLINE vec difference(vec a, vec b, vec unit)
+{
+  (void) unit;
+  return a - b;
+}
+#elif LANES == 1
+/* Whole numbers without a sign, whose difference is one with a sign. */
+INLINE vec difference(vec a, vec b, vec unit)
+{
+  uint32_t m, n;
+  memcpy(&m, &a, sizeof(m));
+  memcpy(&n, &b, sizeof(n));
+  return (float) (int32_t) (m - n) * unit;
+}
+#else
+typedef uint32_t whole_numbers __attribute__((vector_size(VEC_BYTES)));
+
+INLINE vec difference(vec a, vec b, vec unit)
+{
+  const yes_no steps = (yes_no) ((whole_numbers) a - (whole_numbers) b);
+  return __builtin_convertvector(steps, vec) * unit;
+}
+#endif
+
 /* COUNT polynomials of one degree at once: coefficient [COUNT][stride] */
-INLINE void horner(int count, int degree, const double *coefficient, int stride, vec t, vec *value)
+INLINE void horner(int count, int degree, const real *coefficient, int stride, vec t, vec *value)
 {
 #pragma GCC unroll 8
   for (int f = 0; f < count; f++) value[f] = all(coefficient[f * stride + degree]);
@@ -40,40 +66,57 @@ INLINE void horner(int count, int degree, const double *coefficient, int stride,
 
 /* A = I_0 - (b_i + b_j) I_1 + b_i b_j I_2 = (I_0 - b_i I_1) - b_j (I_1 - b_i I_2), and the same of J:
  * four polynomials for a target, out [4][SD_RADIAL_TERMS]. */
-INLINE void polynomials_of_target(const sd_near_part *p, double b, int degree, double *out)
+INLINE void polynomials_of_target(const sd_near_part *p, double b, int degree, real *out)
 {
   for (int l = 0; l < 2; l++)
     for (int k = 0; k <= degree; k++) {
       const double c0 = p->coefficient[SD_I0 + l][k], c1 = p->coefficient[SD_I1 + l][k];
       const double c2 = p->coefficient[SD_I2 + l][k];
-      out[l * SD_RADIAL_TERMS + k] = c0 - b * c1;
-      out[(2 + l) * SD_RADIAL_TERMS + k] = c1 - b * c2;
+      out[l * SD_RADIAL_TERMS + k] = (real) (c0 - b * c1);
+      out[(2 + l) * SD_RADIAL_TERMS + k] = (real) (c1 - b * c2);
     }
+}
+
+/* The polynomials of all radii, as real numbers */
+typedef struct {
+  real of[SD_RADIALS][SD_RADIAL_TERMS];
+} near_polynomials;
+
+static void near_polynomials_of(const sd_near_part *p, near_polynomials *c)
+{
+  for (int f = 0; f < SD_RADIALS; f++)
+    for (int k = 0; k <= p->degree; k++) c->of[f][k] = (real) p->coefficient[f][k];
 }
 
 /* Forces. equal: all radii are a_ref, and two polynomials do. */
 INLINE void near_forces(int equal, int degree, const sd_near_part *p)
 {
-  const vec range2 = all(p->range2), twice = all(2.0 / p->range2), one = all(1.0);
-  const vec sixth = all(1.0 / 6.0), ref2 = all(p->ref2);
+  const real *rows = p->row;
+  real *sums = p->u;
+  near_polynomials shared;
+  near_polynomials_of(p, &shared);
+  const vec unit = all((real) p->unit), range2 = all((real) p->range2), twice = all((real) (2.0 / p->range2));
+  const vec one = all(1.0), ref2 = all((real) p->ref2);
+  const vec sixth = all(1.0 / 6.0);
   for (int i = 0; i < p->rows; i++) {
-    const double *own = p->row + 8 * (long) i;
+    const real *own = rows + 8 * (long) i;
     const vec x = all(own[0]), y = all(own[1]), z = all(own[2]), a = all(own[3]);
     const vec G0 = all(own[4]), G1 = all(own[5]), G2 = all(own[6]), a2 = a * a;
     const long end = p->first[i + 1];
-    double mine[4 * SD_RADIAL_TERMS];
-    const double *c = p->coefficient[0];
+    real mine[4 * SD_RADIAL_TERMS];
+    const real *c = shared.of[0];
     if (!equal && p->first[i] < end) {
-      polynomials_of_target(p, (own[3] * own[3] - p->ref2) / 6.0, degree, mine);
+      polynomials_of_target(p, ((double) own[3] * own[3] - p->ref2) / 6.0, degree, mine);
       c = mine;
     }
     vec u0 = all(0.0), u1 = u0, u2 = u0;
     for (long k = p->first[i]; k < end; k += LANES) {
       const int *j = p->neighbor + k;
       vec at[4], F[4], f, h, D[4];
-      gather(p->row, 8, j, at);
-      gather(p->row + 4, 8, j, F);
-      const vec dx = x - at[0], dy = y - at[1], dz = z - at[2], aj = at[3];
+      gather(rows, 8, j, at);
+      gather(rows + 4, 8, j, F);
+      const vec dx = difference(x, at[0], unit), dy = difference(y, at[1], unit);
+      const vec dz = difference(z, at[2], unit), aj = at[3];
       const vec r2 = dx * dx + dy * dy + dz * dz, t = smaller(r2, range2) * twice - one;
       block(r2, a, aj, a2 + aj * aj, &f, &h);
       horner(equal ? 2 : 4, degree, c, SD_RADIAL_TERMS, t, D);
@@ -91,9 +134,9 @@ INLINE void near_forces(int equal, int degree, const sd_near_part *p)
       u1 = (u1 + f * F[1]) + e * dy;
       u2 = (u2 + f * F[2]) + e * dz;
       vec v[4] = {f * G0 + g * dx, f * G1 + g * dy, f * G2 + g * dz, all(0.0)};
-      add_to_rows(p->u, 4, j, v);
+      add_to_rows(sums, 4, j, v);
     }
-    double *u = p->u + 4 * (long) i;
+    real *u = sums + 4 * (long) i;
     u[0] += total(u0);
     u[1] += total(u1);
     u[2] += total(u2);
@@ -103,10 +146,15 @@ INLINE void near_forces(int equal, int degree, const sd_near_part *p)
 /* With torques all eight, whatever the radii. */
 INLINE void near_torques(int degree, const sd_near_part *p)
 {
-  const vec range2 = all(p->range2), twice = all(2.0 / p->range2), one = all(1.0);
-  const vec quarter = all(0.25), sixth = all(1.0 / 6.0), ref2 = all(p->ref2);
+  const real *rows = p->row, *turns = p->torque_row;
+  real *sums = p->u;
+  near_polynomials shared;
+  near_polynomials_of(p, &shared);
+  const vec unit = all((real) p->unit), range2 = all((real) p->range2), twice = all((real) (2.0 / p->range2));
+  const vec one = all(1.0), ref2 = all((real) p->ref2);
+  const vec quarter = all(0.25), sixth = all(1.0 / 6.0);
   for (int i = 0; i < p->rows; i++) {
-    const double *own = p->row + 8 * (long) i, *turn = p->torque_row + 4 * (long) i;
+    const real *own = rows + 8 * (long) i, *turn = turns + 4 * (long) i;
     const vec x = all(own[0]), y = all(own[1]), z = all(own[2]), a = all(own[3]);
     const vec bi = (a * a - ref2) * sixth;
     vec u[6], G[6];
@@ -120,13 +168,14 @@ INLINE void near_torques(int degree, const sd_near_part *p)
       const int *j = p->neighbor + k;
       vec at[4], F[7], D[SD_RADIALS], v[6];
       grand b;
-      gather(p->row, 8, j, at);
-      gather(p->row + 4, 8, j, F);
-      gather(p->torque_row, 4, j, F + 3);
-      const vec dx = x - at[0], dy = y - at[1], dz = z - at[2], aj = at[3];
+      gather(rows, 8, j, at);
+      gather(rows + 4, 8, j, F);
+      gather(turns, 4, j, F + 3);
+      const vec dx = difference(x, at[0], unit), dy = difference(y, at[1], unit);
+      const vec dz = difference(z, at[2], unit), aj = at[3];
       const vec r2 = dx * dx + dy * dy + dz * dz, t = smaller(r2, range2) * twice - one;
       grand_block(r2, a, aj, a * a + aj * aj, &b);
-      horner(SD_RADIALS, degree, p->coefficient[0], SD_RADIAL_TERMS, t, D);
+      horner(SD_RADIALS, degree, shared.of[0], SD_RADIAL_TERMS, t, D);
       const vec bj = (aj * aj - ref2) * sixth, sum = bi + bj, product = bi * bj;
       b.f -= D[SD_I0] - sum * D[SD_I1] + product * D[SD_I2];
       b.h -= D[SD_J0] - sum * D[SD_J1] + product * D[SD_J2];
@@ -139,10 +188,10 @@ INLINE void near_torques(int degree, const sd_near_part *p)
       for (int d = 0; d < 6; d++) v[d] = all(0.0);
       grand_add(&b, b.cij, b.cji, -dx, -dy, -dz, G, v);
       vec U[4] = {v[0], v[1], v[2], all(0.0)}, W[4] = {v[3], v[4], v[5], all(0.0)};
-      add_to_rows(p->u, 8, j, U);
-      add_to_rows(p->u + 4, 8, j, W);
+      add_to_rows(sums, 8, j, U);
+      add_to_rows(sums + 4, 8, j, W);
     }
-    double *own_u = p->u + 8 * (long) i;
+    real *own_u = sums + 8 * (long) i;
 #pragma GCC unroll 6
     for (int k = 0; k < 6; k++) own_u[k < 3 ? k : k + 1] += total(u[k]);
   }

@@ -1,16 +1,21 @@
 #include "sd_ewald_pairs.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "sd_constants.h"
+#include "sd_real.h"
 #include "sd_room.h"
 
 void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
                            const struct sd_ewald_kernels *kernels, int width)
 {
   p->kernels = kernels;
+  p->bytes = kernels->bytes;
+  p->doubles = p->bytes == sizeof(double) ? kernels : SD_KERNELS_OF(sd_ewald, plain, sd_isa_of(SD_ISA_BEST));
+  p->full = (int) (SD_FULL * sizeof(double) / p->bytes);
   p->ewald = *e;
   p->width = width;
   p->degree = sd_near_degree(sd_radial_fit(e, width, p->coefficient[0]));
@@ -31,17 +36,25 @@ void sd_ewald_pairs_free(sd_ewald_pairs *p)
 
 /* --- rows in order of cells --- */
 
+static double *centres_of(const sd_ewald_pairs *p)
+{
+  return p->u;
+}
+
 /* The last centres are read in whole vectors. */
 static int ep_make_room(sd_ewald_pairs *p, int n)
 {
-  const size_t rows = (size_t) n + 1, doubles = (p->width == 6 ? 20 : 12) * rows + SD_FULL;
+  const size_t rows = (size_t) n + 1, sums = (p->width == 6 ? 8 : 4) * p->bytes, centre = 3 * sizeof(double);
+  const size_t in_rows = 8 * p->bytes * rows, turns = p->width == 6 ? 4 * p->bytes * rows : 0;
+  const size_t in_u = (sums > centre ? sums : centre) * rows + SD_FULL * sizeof(double);
+  const size_t doubles = (in_rows + in_u + turns) / sizeof(double) + 1;
   p->row = sd_reserve_lines(&p->memory, doubles, &p->room);
   if (!p->row || !sd_reserve(&p->sphere, sizeof(int), rows, &p->sphere_room) ||
       !sd_reserve(&p->target, sizeof(int), rows, &p->target_room) ||
       !sd_reserve(&p->first, sizeof(long), rows, &p->first_room))
     return 0;
-  p->u = p->row + 8 * rows;
-  p->torque_row = p->width == 6 ? p->u + 8 * rows : NULL;
+  p->u = (char *) p->row + in_rows;
+  p->torque_row = turns > 0 ? (char *) p->u + in_u : NULL;
   return 1;
 }
 
@@ -59,28 +72,41 @@ static sd_status sort_spheres(sd_ewald_pairs *p, int n, int n_all)
   return SD_OK;
 }
 
-/* A row that stands for nothing: no force, and far from everything. */
-static const double nowhere = 1e16;
+/* Of floats: how many of the whole numbers that are coordinates make a length; 2^32 are four ranges. */
+static double steps_per_length(const sd_ewald_pairs *p)
+{
+  return 0x1p30 / p->ewald.range;
+}
+
+/* The coordinates of a row */
+static void put_place(const sd_ewald_pairs *p, long row, const double *x)
+{
+  for (int d = 0; d < 3; d++) {
+    if (p->bytes == sizeof(double)) {
+      ((double *) p->row)[8 * row + d] = x[d] * p->scale;
+      continue;
+    }
+    const double steps = floor(x[d] * steps_per_length(p) + 0.5), turn = 0x1p32;
+    const uint32_t whole = (uint32_t) (steps - turn * floor(steps / turn));
+    memcpy((float *) p->row + 8 * row + d, &whole, sizeof(whole));
+  }
+}
 
 static void fill_rows(sd_ewald_pairs *p)
 {
-  double largest = 0.0;
+  double largest = 0.0, *centre = centres_of(p);
   for (int k = 0; k < p->rows; k++) largest = fmax(largest, p->spheres.a[p->sphere[k]]);
   p->scale = largest > 0.0 ? ldexp(1.0, -ilogb(largest)) : 1.0;
   p->equal = 1;
   for (int k = 0; k < p->rows; k++) {
     const long i = p->sphere[k];
-    double *row = p->row + 8 * (long) k;
-    for (int d = 0; d < 3; d++) {
-      row[d] = p->spheres.x[3 * i + d] * p->scale;
-      p->u[(long) d * p->rows + k] = p->spheres.x[3 * i + d];
-    }
-    row[3] = p->spheres.a[i] * p->scale;
+    put_place(p, k, p->spheres.x + 3 * i);
+    for (int d = 0; d < 3; d++) centre[(long) d * p->rows + k] = p->spheres.x[3 * i + d];
+    sd_put_number(p->row, p->bytes, 8L * k + 3, p->spheres.a[i] * p->scale);
     p->equal = p->equal && p->spheres.a[i] == p->ewald.a_ref;
   }
-  const double last[8] = {nowhere, nowhere, nowhere};
-  memcpy(p->row + 8 * (long) p->rows, last, sizeof(last));
-  if (p->width == 6) memset(p->torque_row + 4 * (long) p->rows, 0, 4 * sizeof(double));
+  for (int d = 0; d < 8; d++) sd_put_number(p->row, p->bytes, 8L * p->rows + d, d < 3 ? SD_NOWHERE : 0.0);
+  for (int d = 0; d < 4 && p->width == 6; d++) sd_put_number(p->torque_row, p->bytes, 4L * p->rows + d, 0.0);
 }
 
 /* --- neighbours --- */
@@ -93,17 +119,17 @@ static long keep_ours(sd_ewald_pairs *p, int n, long begin, long end)
     const int row = p->neighbor[k];
     if (row < p->rows && p->sphere[row] < n) p->neighbor[ours++] = row;
   }
-  while ((ours - begin) % SD_FULL) p->neighbor[ours++] = p->rows;
+  while ((ours - begin) % p->full) p->neighbor[ours++] = p->rows;
   return ours;
 }
 
 long sd_ewald_pairs_near(sd_ewald_pairs *p, int row, int ranges, const int *range, long many)
 {
-  const double range2 = p->ewald.range * p->ewald.range, *centre = p->u + row;
+  const double range2 = p->ewald.range * p->ewald.range, *centre = centres_of(p) + row;
   const double x[3] = {centre[0], centre[p->rows], centre[2 * (long) p->rows]};
   int *list = p->neighbor + many;
-  long found = p->kernels->search(p->u, p->rows, range, ranges, x, range2, list);
-  while (found % SD_FULL) list[found++] = p->rows;
+  long found = p->doubles->search(centres_of(p), p->rows, range, ranges, x, range2, list);
+  while (found % p->full) list[found++] = p->rows;
   return many + found;
 }
 
@@ -117,7 +143,7 @@ static sd_status visit_sphere(void *ctx, int row, int ranges, long most)
 {
   finder *f = ctx;
   sd_ewald_pairs *p = f->pairs;
-  if (!sd_extend(&p->neighbor, sizeof(int), (size_t) (f->many + most + 2 * SD_FULL), &p->neighbor_room))
+  if (!sd_extend(&p->neighbor, sizeof(int), (size_t) (f->many + most + 3 * SD_FULL), &p->neighbor_room))
     return SD_ENOMEMORY;
   p->first[row] = f->many;
   const long end = sd_ewald_pairs_near(p, row, ranges, p->cells.range, f->many);
@@ -150,9 +176,9 @@ static void ep_load(sd_ewald_pairs *p, int n, const double *F, const double *gho
   for (long k = 0; k < p->rows; k++) {
     const long i = p->sphere[k];
     const double w = p->spheres.w[i], *from = i < n ? F + m * i : ghosts + m * (i - n);
-    double *row = p->row + 8 * k;
-    for (int d = 0; d < 3; d++) row[4 + d] = w * from[d];
-    for (int d = 3; d < m; d++) p->torque_row[4 * k + d - 3] = w * p->scale * from[d];
+    for (int d = 0; d < 3; d++) sd_put_number(p->row, p->bytes, 8 * k + 4 + d, w * from[d]);
+    for (int d = 3; d < m; d++)
+      sd_put_number(p->torque_row, p->bytes, 4 * k + d - 3, w * p->scale * from[d]);
   }
 }
 
@@ -167,6 +193,7 @@ sd_near_part sd_ewald_pairs_part(const sd_ewald_pairs *p)
                     .torque_row = p->torque_row,
                     .u = p->u,
                     .degree = p->degree};
+  k.unit = p->scale / steps_per_length(p);
   const double s = p->scale, range = p->ewald.range * s, ref = p->ewald.a_ref * s;
   k.range2 = range * range;
   k.ref2 = ref * ref;
@@ -186,18 +213,33 @@ void sd_ewald_pairs_apply(sd_ewald_pairs *p, int n, const double *F, const doubl
   ep_load(p, n, F, ghosts);
   const sd_near_part k = sd_ewald_pairs_part(p);
   const long step = m == 6 ? 8 : 4;
-  memset(p->u, 0, sizeof(double) * (size_t) (step * (p->rows + 1)));
+  memset(p->u, 0, p->bytes * (size_t) (step * (p->rows + 1)));
   p->kernels->near_part(&k);
   memset(u, 0, sizeof(double) * (size_t) m * (size_t) n);
   for (int i = 0; i < p->n; i++) {
     const long j = p->sphere[p->target[i]];
-    const double *near = p->u + step * p->target[i];
+    const long near = step * p->target[i];
     const double w = p->spheres.w[j], unit = w * p->scale / (8.0 * SD_PI);
     const double b = sd_ewald_b(&p->ewald, p->spheres.a[j]);
     const double self = p->origin[SD_I0] - 2.0 * b * p->origin[SD_I1] + b * b * p->origin[SD_I2];
-    for (int d = 0; d < 3; d++) u[m * j + d] = unit * near[d] - w * w * self * F[m * j + d];
+    for (int d = 0; d < 3; d++) u[m * j + d] = unit * sd_number(p->u, p->bytes, near + d) - w * w * self * F[m * j + d];
     for (int d = 3; d < m; d++)
-      u[m * j + d] = unit * p->scale * near[d + 1] - 0.25 * w * w * p->origin[SD_I1] * F[m * j + d];
+      u[m * j + d] = unit * p->scale * sd_number(p->u, p->bytes, near + d + 1) -
+          0.25 * w * w * p->origin[SD_I1] * F[m * j + d];
   }
   sd_ewald_groups_apply(p, F, u);
+}
+
+/* The scale of torques is a power of two, and nothing is lost. */
+void *sd_ewald_pairs_rows(sd_ewald_pairs *p)
+{
+  const size_t bytes = p->bytes;
+  const long m = p->width;
+  for (int i = 0; i < p->n; i++) {
+    const long k = p->target[i];
+    memcpy(sd_at_number(p->u, bytes, m * i), sd_at_number(p->row, bytes, 8 * k + 4), 3 * bytes);
+    for (int d = 3; d < m; d++)
+      sd_put_number(p->u, bytes, m * i + d, sd_number(p->torque_row, bytes, 4 * k + d - 3) / p->scale);
+  }
+  return p->u;
 }

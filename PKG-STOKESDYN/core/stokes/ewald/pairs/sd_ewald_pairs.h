@@ -13,9 +13,14 @@
 
 SD_BEGIN_C
 
+/* Coordinates of the row that stands for nothing: no force, and far from everything */
+#define SD_NOWHERE 1e16
+
 /* Zero-initialise; sd_ewald_pairs_free in the end. */
 typedef struct sd_ewald_pairs {
   const struct sd_ewald_kernels *kernels;
+  /* those of doubles, for what has no other */
+  const struct sd_ewald_kernels *doubles;
   sd_ewald ewald;
   int width, degree;
   double coefficient[SD_RADIALS][SD_RADIAL_TERMS], origin[SD_RADIALS], scale;
@@ -29,8 +34,13 @@ typedef struct sd_ewald_pairs {
   /* each pair once, by the row that comes first, and no two ghosts: [rows + 1] neighbours of a row */
   long *first;
   int *neighbor;
-  /* sd_near_part's, in one block; before the products u holds the centres [3][rows] */
-  double *row, *torque_row, *u, *memory;
+  /* lists are filled up to a multiple of so many, whole vectors of every set */
+  int full;
+  /* sd_near_part's, in one block, `bytes` a number; between two products u has room for a row of
+   * numbers for each sphere, and before them it holds the centres [3][rows], doubles */
+  size_t bytes;
+  void *row, *torque_row, *u;
+  double *memory;
   size_t room, sphere_room, target_room, first_room, neighbor_room;
   /* rows are found by these: one by one, or where they stand in groups, by groups */
   sd_ewald_cells cells;
@@ -53,6 +63,10 @@ void sd_ewald_pairs_apply(sd_ewald_pairs *p, int n, const double *F, const doubl
  * returns how many there are then. And the kernels' table. */
 long sd_ewald_pairs_near(sd_ewald_pairs *p, int row, int ranges, const int *range, long many);
 sd_near_part sd_ewald_pairs_part(const sd_ewald_pairs *p);
+
+/* Afterwards, of the same forces: rows [width] for each target, w F, in memory that lasts until the
+ * next product */
+void *sd_ewald_pairs_rows(sd_ewald_pairs *p);
 
 void sd_ewald_pairs_free(sd_ewald_pairs *p);
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "sd_constants.h"
+#include "sd_real.h"
 #include "sd_room.h"
 
 /* Gradients of the grid's coordinates, and their products */
@@ -73,7 +74,7 @@ static sd_status make_grid(sd_ewald_waves *w, const sd_world *world)
   int size[3];
   const int occupied[3] = {e->slab.planes > 0 ? e->slab.planes : e->grid[0], e->grid[1], e->grid[2]};
   for (int d = 0; d < 3; d++) size[d] = (e->box.periodic ? 1 : 2) * e->grid[d];
-  sd_status status = sd_grid_create(&w->grid, size, occupied, world);
+  sd_status status = sd_grid_create(&w->grid, size, occupied, w->kernels->bytes, world);
   if (status == SD_OK)
     status = sd_wave_create(&w->wave, e, w->kernels, size, w->grid.own[SD_SHARED_Y],
                             w->grid.own[SD_SHARED_Z]);
@@ -279,27 +280,53 @@ sd_status sd_ewald_waves_place_whole(sd_ewald_waves *w)
 
 /* --- product --- */
 
-sd_status sd_ewald_waves_convolve(sd_ewald_waves *w, const sd_spheres *s, const double *F, double *u)
+void sd_ewald_waves_load(const sd_ewald_waves *w, const sd_spheres *s, const double *F, void *rows)
 {
-  const long m = w->width, vectors = m / 3 * w->n;
+  const long m = w->width;
   for (int i = 0; i < w->n; i++) {
     const long j = w->sphere[i];
-    for (int d = 0; d < m; d++) u[m * i + d] = s->w[j] * F[m * j + d];
+    for (int d = 0; d < m; d++)
+      sd_put_number(rows, w->kernels->bytes, m * i + d, s->w[j] * F[m * j + d]);
   }
-  for (long k = 0; k < vectors && w->turn; k++) turn_numbers(u + 3 * k, w->turn);
+}
+
+void sd_ewald_waves_add(const sd_ewald_waves *w, const sd_spheres *s, const void *rows, double *u)
+{
+  const long m = w->width;
+  for (int i = 0; i < w->n; i++) {
+    const long j = w->sphere[i];
+    for (int d = 0; d < m; d++)
+      u[m * j + d] += s->w[j] * sd_number(rows, w->kernels->bytes, m * i + d);
+  }
+}
+
+/* Vectors of the rows in the frame that is `turn` further */
+static void turn_rows(const sd_ewald_waves *w, void *rows, int turn)
+{
+  const size_t bytes = w->kernels->bytes;
+  const long vectors = (long) w->width / 3 * w->n;
+  for (long k = 0; k < vectors && turn % 3; k++) {
+    double v[3];
+    for (int d = 0; d < 3; d++) v[d] = sd_number(rows, bytes, 3 * k + d);
+    for (int d = 0; d < 3; d++) sd_put_number(rows, bytes, 3 * k + d, v[(d + turn) % 3]);
+  }
+}
+
+sd_status sd_ewald_waves_convolve(sd_ewald_waves *w, void *rows)
+{
   sd_grid *g = &w->grid;
-  memset(g->brick, 0, sizeof(double) * ((size_t) (g->layer * g->n[0]) + 16));
-  w->spreading.F = u;
+  turn_rows(w, rows, w->turn);
+  memset(g->brick, 0, g->bytes * sd_grid_brick_numbers(g));
+  w->spreading.F = rows;
   w->kernels->spread(&w->spreading);
   return sd_grid_convolve(g, sd_wave_multiply, &w->wave);
 }
 
-sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const double *F, double *u)
+sd_status sd_ewald_waves_apply(sd_ewald_waves *w, void *rows)
 {
-  const long vectors = (long) w->width / 3 * w->n;
-  const sd_status status = sd_ewald_waves_convolve(w, s, F, u);
+  const sd_status status = sd_ewald_waves_convolve(w, rows);
   if (status == SD_OK) w->kernels->interpolate(&w->spreading);
-  for (long k = 0; k < vectors && w->turn; k++) turn_numbers(u + 3 * k, 3 - w->turn);
+  turn_rows(w, rows, 3 - w->turn);
   return status;
 }
 
@@ -331,15 +358,14 @@ static void fill_white(void *ctx, int x, int y, int y_end, long stride, double *
   }
 }
 
-sd_status sd_ewald_waves_draw(sd_ewald_waves *w, const sd_random_key *key, double *u)
+sd_status sd_ewald_waves_draw(sd_ewald_waves *w, const sd_random_key *key, void *rows)
 {
-  const long vectors = w->width / 3 * w->n;
   white from = {w, *key};
   from.key.purpose = SD_RANDOM_GRID;
-  w->spreading.F = u;
+  w->spreading.F = rows;
   const sd_status status =
       sd_grid_convolve_values(&w->grid, fill_white, &from, sd_wave_multiply_root, &w->wave);
   if (status == SD_OK) w->kernels->interpolate(&w->spreading);
-  for (long k = 0; k < vectors && w->turn; k++) turn_numbers(u + 3 * k, 3 - w->turn);
+  turn_rows(w, rows, 3 - w->turn);
   return status;
 }

@@ -62,18 +62,24 @@ sd_status sd_ewald_waves_meet(sd_ewald_waves *w, const int *brick, sd_status sta
  * flow can be read anywhere. The frame must never have turned. SD_OK or SD_ENOMEMORY. */
 sd_status sd_ewald_waves_place_whole(sd_ewald_waves *w);
 
-/* F -> velocities on the brick (spreading.brick), by way of u, as in sd_ewald_waves_apply. SD_OK or
- * what an exchange said. */
-sd_status sd_ewald_waves_convolve(sd_ewald_waves *w, const sd_spheres *s, const double *F, double *u);
+/* Rows are [width n], in order of sphere, of the kernels' numbers, in memory of the caller. */
 
-/* F [width] a sphere -> u [width n], in order of sphere and without its weight, memory that the
- * caller has for it. SD_OK or what an exchange said. */
-sd_status sd_ewald_waves_apply(sd_ewald_waves *w, const sd_spheres *s, const double *F, double *u);
+/* Rows of w F; F [width] a sphere */
+void sd_ewald_waves_load(const sd_ewald_waves *w, const sd_spheres *s, const double *F, void *rows);
 
-/* u [width n] as above, random, with the covariance of the wave part of a periodic box, window and
+/* u [width] a sphere += w times the rows */
+void sd_ewald_waves_add(const sd_ewald_waves *w, const sd_spheres *s, const void *rows, double *u);
+
+/* Rows of w F -> velocities on the brick (spreading.brick). SD_OK or what an exchange said. */
+sd_status sd_ewald_waves_convolve(sd_ewald_waves *w, void *rows);
+
+/* Rows of w F -> rows of velocities. SD_OK or what an exchange said. */
+sd_status sd_ewald_waves_apply(sd_ewald_waves *w, void *rows);
+
+/* Rows of velocities, random, with the covariance of the wave part of a periodic box, window and
  * all: from three normal numbers at each point of the grid, by the number of the point in the frame
- * of the box (SD_RANDOM_GRID). SD_OK or what an exchange said. */
-sd_status sd_ewald_waves_draw(sd_ewald_waves *w, const sd_random_key *key, double *u);
+ * of the box (SD_RANDOM_GRID). Of doubles alone. SD_OK or what an exchange said. */
+sd_status sd_ewald_waves_draw(sd_ewald_waves *w, const sd_random_key *key, void *rows);
 
 void sd_ewald_waves_free(sd_ewald_waves *w);
 

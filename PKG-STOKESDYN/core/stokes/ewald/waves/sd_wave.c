@@ -9,12 +9,26 @@
 #include "sd_image_kernel.h"
 #include "sd_padded.h"
 #include "sd_radial.h"
+#include "sd_real.h"
 #include "sd_window.h"
 
 /* Wave number of point m of n: 0, 1 ... n/2 - 1, then from -n/2 on */
 static int wave_number(int m, int n)
 {
   return m < (n + 1) / 2 ? m : m - n;
+}
+
+/* A table that was made of doubles, of kernels that take floats */
+static sd_status narrow(sd_wave *w, size_t numbers)
+{
+  if (w->kernels->bytes == sizeof(double)) return SD_OK;
+  const double *from = w->table;
+  float *table = malloc(sizeof(float) * (numbers + 1));
+  if (!table) return SD_ENOMEMORY;
+  for (size_t k = 0; k < numbers; k++) table[k] = (float) from[k];
+  free(w->table);
+  w->table = table;
+  return SD_OK;
 }
 
 /* --- periodic --- */
@@ -50,7 +64,7 @@ static sd_status periodic_table(sd_wave *w, const sd_ewald *e, int y1)
       periodic_entries(w, e, start, inverse[0][abs(mx)] * inverse[1][abs(my)], inverse[2], next);
     }
   for (int d = 0; d < 3; d++) free(inverse[d]);
-  return ok ? SD_OK : SD_ENOMEMORY;
+  return ok ? narrow(w, row * rows) : SD_ENOMEMORY;
 }
 
 /* --- open --- */
@@ -107,11 +121,13 @@ static sd_status open_table(sd_wave *w, const sd_ewald *e, int y1)
   }
   if (end == 0) w->first_row = 0;
   const size_t row = 6 * (size_t) (w->size[0] / 2 + 1) * (size_t) w->depth;
-  w->table = malloc(sizeof(double) * (row * (size_t) (end - w->first_row) + 1));
+  const size_t numbers = row * (size_t) (end - w->first_row);
+  w->table = malloc(sizeof(double) * (numbers + 1));
   if (!w->table) return SD_ENOMEMORY;
   const int y[2] = {w->first_row, end}, z[2] = {w->z0, w->z0 + w->depth};
   const sd_padded kernel = open_kernel(e);
-  const sd_status status = sd_padded_table(&kernel, w->size, y, z, w->table);
+  sd_status status = sd_padded_table(&kernel, w->size, y, z, w->table);
+  if (status == SD_OK) status = narrow(w, numbers);
   return status == SD_OK && e->images.wall.sign ? image_table(w, e, y, z) : status;
 }
 
@@ -140,13 +156,19 @@ void sd_wave_free(sd_wave *w)
 }
 
 /* B of the row of wave numbers x and y along z */
-static const double *periodic_entry(const sd_wave *w, int x, int y)
+static const void *periodic_entry(const sd_wave *w, int x, int y)
 {
-  return w->table + ((long) (y - w->y0) * w->size[0] + x) * w->depth;
+  return sd_at_number(w->table, w->kernels->bytes, ((long) (y - w->y0) * w->size[0] + x) * w->depth);
+}
+
+/* Row x of the three fields of a plane */
+static void rows_at(const sd_wave *w, void *const *plane, int x, void **row)
+{
+  for (int c = 0; c < 3; c++) row[c] = sd_at_number(plane[c], w->kernels->bytes, 2L * x * w->depth);
 }
 
 /* That row of the three fields, times B and the projection */
-static void wa_periodic_row(const sd_wave *w, int x, int y, const double *B, double *const *row)
+static void wa_periodic_row(const sd_wave *w, int x, int y, const void *B, void *const *row)
 {
   const int mx = wave_number(x, w->size[0]), my = wave_number(y, w->size[1]);
   double k[3];
@@ -155,36 +177,36 @@ static void wa_periodic_row(const sd_wave *w, int x, int y, const double *B, dou
   w->kernels->periodic_row(row, B, k, w->k[2][2], w->depth);
 }
 
-void sd_wave_multiply_root(void *ctx, int y, double *const *plane)
+void sd_wave_multiply_root(void *ctx, int y, void *const *plane)
 {
   const sd_wave *w = ctx;
   const double points = (double) w->size[0] * w->size[1] * w->size[2];
   for (int x = 0; x < w->size[0]; x++) {
     const double *B = periodic_entry(w, x, y);
-    double *row[3];
-    for (int c = 0; c < 3; c++) row[c] = plane[c] + (long) x * 2 * w->depth;
+    void *row[3];
+    rows_at(w, plane, x, row);
     for (int m = 0; m < w->depth; m++) w->roots[m] = sqrt(B[m] / points);
     wa_periodic_row(w, x, y, w->roots, row);
   }
 }
 
 /* Rows x and -x of a plane of an open box above a wall, and what they are multiplied with */
-static sd_image_rows rows_above(const sd_wave *w, int x, int y, double *const *plane)
+static sd_image_rows rows_above(const sd_wave *w, int x, int y, void *const *plane)
 {
   const int half_x = w->size[0] / 2 + 1, my = wave_number(y, w->size[1]), depth = w->depth;
   const long entry = (long) (abs(my) - w->first_row) * half_x + x;
   sd_image_rows r = {.depth = depth,
-                     .K = w->table + entry * 6 * depth,
+                     .K = (const double *) w->table + entry * 6 * depth,
                      .images = w->images + entry * 2 * SD_IMAGE_KERNELS * depth,
                      .gamma = w->gamma[x],
                      .sy = my < 0 ? -1.0 : 1.0};
   const long at[2] = {x, (w->size[0] - x) % w->size[0]};
   for (int side = 0; side < 2; side++)
-    for (int c = 0; c < 6; c++) r.row[side][c] = plane[c] + at[side] * 2 * depth;
+    for (int c = 0; c < 6; c++) r.row[side][c] = (double *) plane[c] + at[side] * 2 * depth;
   return r;
 }
 
-void sd_wave_multiply(void *ctx, int y, double *const *plane)
+void sd_wave_multiply(void *ctx, int y, void *const *plane)
 {
   const sd_wave *w = ctx;
   for (int x = 0; x <= w->size[0] / 2 && w->images; x++) {
@@ -196,12 +218,13 @@ void sd_wave_multiply(void *ctx, int y, double *const *plane)
   const int my = wave_number(y, w->size[1]);
   for (int x = 0; x < w->size[0]; x++) {
     const int mx = wave_number(x, w->size[0]);
-    double *row[3];
-    for (int c = 0; c < 3; c++) row[c] = plane[c] + (long) x * 2 * depth;
+    void *row[3];
+    rows_at(w, plane, x, row);
     if (w->periodic)
       wa_periodic_row(w, x, y, periodic_entry(w, x, y), row);
     else {
-      const double *K = w->table + ((long) (abs(my) - w->first_row) * half_x + abs(mx)) * 6 * depth;
+      const long entry = (long) (abs(my) - w->first_row) * half_x + abs(mx);
+      const void *K = sd_at_number(w->table, w->kernels->bytes, entry * 6 * depth);
       w->kernels->open_row(row, K, mx < 0 ? -1.0 : 1.0, my < 0 ? -1.0 : 1.0, depth);
     }
   }

@@ -20,6 +20,7 @@ struct sd_ewald_kernels;
 
 /* Zero-initialise; sd_wave_free in the end. */
 typedef struct {
+  /* whose numbers are those of the tables and of what these are multiplied with */
   const struct sd_ewald_kernels *kernels;
   /* this rank has the waves y0 ... of y and z0 ... of z, of these `depth` */
   int periodic, size[3], y0, z0, depth;
@@ -28,7 +29,7 @@ typedef struct {
   /* 2 pi times the reciprocal vectors, rows */
   double k[3][3];
   /* periodic: [y][size x][depth]; open: rows of one octant [rows][half x][6][depth] */
-  double *table;
+  void *table;
   /* periodic: [depth] */
   double *roots;
   /* wall: rows [rows][half x][SD_IMAGE_KERNELS][2][depth], and gamma [size x]; else NULL */
@@ -41,12 +42,12 @@ sd_status sd_wave_create(sd_wave *w, const sd_ewald *e, const struct sd_ewald_ke
                          const int *size, const int *y, const int *z);
 
 /* As sd_grid_multiply: ctx is an sd_wave. */
-void sd_wave_multiply(void *ctx, int y, double *const *plane);
+void sd_wave_multiply(void *ctx, int y, void *const *plane);
 
-/* The same of a periodic box with the root of B over that of the number of points: applied to the
+/* The same of a periodic box, of doubles alone, with the root of B over that of the number of points: applied to the
  * transform of independent standard normal numbers, and transformed back, it gives velocities on the
  * grid whose covariance is what sd_wave_multiply convolves with. */
-void sd_wave_multiply_root(void *ctx, int y, double *const *plane);
+void sd_wave_multiply_root(void *ctx, int y, void *const *plane);
 
 void sd_wave_free(sd_wave *w);
 

@@ -35,13 +35,13 @@ static cloud make(double small)
   return c;
 }
 
-static void near_part(const cloud *c, const sd_groups *groups, sd_isa isa, double *u)
+static void near_part(const cloud *c, const sd_groups *groups, const struct sd_ewald_kernels *kernels, double *u)
 {
   const sd_ewald_box box = {.periodic = 1, .edge = {12, 12, 12}};
   const sd_ewald how = periodic_choose(&box, c->a, N, 3, 1e-4);
   const sd_spheres spheres = {c->x, c->a, c->w};
   sd_ewald_pairs p = {0};
-  sd_ewald_pairs_create(&p, &how, SD_KERNELS_OF(sd_ewald, plain, isa), 3);
+  sd_ewald_pairs_create(&p, &how, kernels, 3);
   for (int again = 0; again < 2; again++) /* a second place() finds what the first has left */
     assert_int_equal(sd_ewald_pairs_place(&p, &spheres, groups, N, N_ALL), SD_OK);
   sd_ewald_pairs_apply(&p, N, c->F, c->F + 3 * N, u);
@@ -53,11 +53,13 @@ static void check(const cloud *c, const sd_groups *groups, sd_isa isa)
   static double expected[3 * N], u[3 * N];
   const sd_groups none = {0};
   double scale = 0.0;
-  near_part(c, &none, isa, expected);
-  near_part(c, groups, isa, u);
+  near_part(c, &none, SD_KERNELS_OF(sd_ewald, plain, isa), expected);
+  near_part(c, groups, SD_KERNELS_OF(sd_ewald, plain, isa), u);
   for (int i = 0; i < 3 * N; i++) scale = fmax(scale, fabs(expected[i]));
   assert_true(scale > 0.0);
   for (int i = 0; i < 3 * N; i++) CHECK_NEAR(u[i], expected[i], 1e-13 * scale);
+  near_part(c, groups, SD_KERNELS_OF(sd_ewald_single, plain, isa), u);    /* sums of floats */
+  for (int i = 0; i < 3 * N; i++) CHECK_NEAR(u[i], expected[i], 1e-6 * scale);
 }
 
 /* Of all, of some, of none with a form; radii alike and not; each set of instructions */
@@ -108,10 +110,10 @@ static void near_part_is_symmetric(void **state)
   const sd_groups groups = {ALL, c.first, c.form};
   uint64_t seed = 3;
   for (int i = 3 * N; i < 3 * N_ALL; i++) c.F[i] = 0.0;
-  near_part(&c, &groups, SD_ISA_PLAIN, u);
+  near_part(&c, &groups, SD_KERNELS_OF(sd_ewald, plain, SD_ISA_PLAIN), u);
   memcpy(F, c.F, sizeof(F));
   for (int i = 0; i < 3 * N; i++) c.F[i] = uniform(&seed, -1, 1);
-  near_part(&c, &groups, SD_ISA_PLAIN, v);
+  near_part(&c, &groups, SD_KERNELS_OF(sd_ewald, plain, SD_ISA_PLAIN), v);
   for (int i = 0; i < 3 * N; i++) {
     uF += u[i] * c.F[i];
     vG += v[i] * F[i];

@@ -1,0 +1,376 @@
+/* The way of the numbers through the grid of sd_grid.h: from bricks to pencils, along z, y and x, the
+ * product, and back. Of doubles; sd_grid_floats.c: the same of floats. */
+#include <fftw3.h>
+#include <string.h>
+
+#include "sd_grid_internal.h"
+#include "sd_real.h"
+
+#ifdef SD_SINGLE
+#define FFT(name) fftwf_##name
+#else
+#define FFT(name) fftw_##name
+#endif
+typedef FFT(complex) waves;
+
+/* --- plans --- */
+
+/* Our lines of an x plane along z to wave numbers beside; all lines at our z along y to the slab; all
+ * x at our z along x. From one place to another, which FFTW does faster than in one place.
+ * FFTW_ESTIMATE: measured plans differ from run to run, and so do their last bits. */
+static int plan(sd_grid *g)
+{
+  const unsigned how = FFTW_ESTIMATE;
+  const int half = g->half, lines = sd_grid_own(g, SD_SHARED_LINES), depth = sd_grid_own(g, SD_SHARED_Z);
+  const int *size = g->size;
+  waves *slab = g->plane[1], *plane = g->plane[0], *beside = g->beside;
+  if (depth == 0) return 1; /* no pencils */
+  g->z_forth = FFT(plan_many_dft_r2c)(1, size + 2, lines, (real *) plane, NULL, 1, 2 * half,
+                                      beside, NULL, 1, half, how);
+  g->z_back = FFT(plan_many_dft_c2r)(1, size + 2, lines, beside, NULL, 1, half, (real *) plane,
+                                     NULL, 1, 2 * half, how);
+  g->y_forth = FFT(plan_many_dft)(1, size + 1, depth, beside, NULL, depth, 1, slab, NULL, depth, 1,
+                                  FFTW_FORWARD, how);
+  g->y_back = FFT(plan_many_dft)(1, size + 1, depth, slab, NULL, depth, 1, beside, NULL, depth, 1,
+                                 FFTW_BACKWARD, how);
+  g->x_forth = FFT(plan_many_dft)(1, size, depth, beside, NULL, depth, 1, plane, NULL, depth, 1,
+                                  FFTW_FORWARD, how);
+  g->x_back = FFT(plan_many_dft)(1, size, depth, plane, NULL, depth, 1, beside, NULL, depth, 1,
+                                 FFTW_BACKWARD, how);
+  return g->z_forth && g->z_back && g->y_forth && g->y_back && g->x_forth && g->x_back;
+}
+
+static void forget(sd_grid *g)
+{
+  void *const plans[] = {g->z_forth, g->z_back, g->y_forth, g->y_back, g->x_forth, g->x_back};
+  for (int k = 0; k < 6; k++)
+    if (plans[k]) FFT(destroy_plan)(plans[k]);
+}
+
+/* --- bricks and planes of points --- */
+
+/* Rows of a piece along z: three numbers a point, of the brick or of a message */
+static real *brick_row(const sd_grid *g, const sd_piece *p, int i, int j)
+{
+  return (real *) g->brick + (p->at[0] + i) * g->layer + (p->at[1] + j) * g->row + 3 * (long) p->at[2];
+}
+
+static real *message_row(const sd_piece *p, real *message, int i, int j)
+{
+  return message + p->message + 3 * ((long) i * p->n[1] + j) * p->n[2];
+}
+
+/* The pieces of other ranks, from the brick to a message or back */
+static void copy_pieces(const sd_grid *g, real *message, int to_brick)
+{
+  for (int k = 0; k < g->outs; k++) {
+    const sd_piece *p = g->out + k;
+    if (p->rank == g->me) continue;
+    for (int i = 0; i < p->n[0]; i++)
+      for (int j = 0; j < p->n[1]; j++) {
+        real *brick = brick_row(g, p, i, j), *row = message_row(p, message, i, j);
+        memcpy(to_brick ? brick : row, to_brick ? row : brick,
+               3 * sizeof(real) * (size_t) p->n[2]);
+      }
+  }
+}
+
+static void add_row(const sd_grid *g, long at, real *row, int n)
+{
+  real *restrict f0 = (real *) g->plane[0] + at, *restrict f1 = (real *) g->plane[1] + at;
+  real *restrict f2 = (real *) g->plane[2] + at;
+  for (int k = 0; k < n; k++) {
+    f0[k] += row[3 * k];
+    f1[k] += row[3 * k + 1];
+    f2[k] += row[3 * k + 2];
+  }
+}
+
+static void take_row(const sd_grid *g, long at, real *row, int n)
+{
+  const real *f0 = (real *) g->plane[0] + at, *f1 = (real *) g->plane[1] + at;
+  const real *f2 = (real *) g->plane[2] + at;
+  for (int k = 0; k < n; k++) {
+    row[3 * k] = f0[k];
+    row[3 * k + 1] = f1[k];
+    row[3 * k + 2] = f2[k];
+  }
+}
+
+/* Points of our lines of plane x, row by row of the pieces: added from them, or given to them. Our
+ * own are in the brick, others in the message. */
+static inline void each_row(const sd_grid *g, int x, real *message,
+                            void (*visit)(const sd_grid *g, long at, real *row, int n))
+{
+  for (int k = 0; k < g->ins; k++) {
+    const sd_piece *p = g->in + k;
+    const int i = x - p->to[0];
+    if (i < 0 || i >= p->n[0]) continue;
+    for (int j = 0; j < p->n[1]; j++)
+      visit(g, 2L * g->half * (p->to[1] - g->own[SD_SHARED_LINES][0] + j) + p->to[2],
+            p->rank == g->me ? brick_row(g, p, i, j) : message_row(p, message, i, j), p->n[2]);
+  }
+}
+
+static void fill_plane(const sd_grid *g, int x, real *message)
+{
+  for (int c = 0; c < 3; c++)
+    memset(g->plane[c], 0,
+           sizeof(waves) * (size_t) sd_grid_own(g, SD_SHARED_LINES) * (size_t) g->half);
+  each_row(g, x, message, add_row);
+}
+
+/* --- transforms --- */
+
+static waves *slab_row(const sd_grid *g, int c, int x, int y)
+{
+  const long depth = sd_grid_own(g, SD_SHARED_Z);
+  waves *plane = g->slab[x - g->own[SD_SHARED_X][0]];
+  return plane + c * sd_grid_slab_field(g) + y * depth;
+}
+
+static void copy(real *beside, real *box, long numbers, int to_beside)
+{
+  memcpy(to_beside ? beside : box, to_beside ? box : beside, sizeof(real) * (size_t) numbers);
+}
+
+/* The turn in a row, of pencils from z to y: from each of its ranks to each a box of wave numbers
+ * [3][x][its lines][z of the other], which goes forth and comes back; what stays here waits where the
+ * slab will be. Our lines, all z of them, between boxes and `beside` */
+static void copy_lines(const sd_grid *g, int c, int x, real *message, int to_beside)
+{
+  const long planes = sd_grid_own(g, SD_SHARED_X), lines = sd_grid_own(g, SD_SHARED_LINES);
+  const int first = g->me - g->me % g->columns;
+  for (int r = first; r < first + g->columns; r++) {
+    int z[2];
+    sd_grid_range_of(g, SD_SHARED_Z, r, z);
+    const long row = 2L * (z[1] - z[0]);
+    real *box = message + (c * planes + x - g->own[SD_SHARED_X][0]) * lines * row;
+    if (r == g->me) box = (real *) slab_row(g, c, x, 0);
+    for (long l = 0; l < lines; l++, box += row)
+      copy((real *) g->beside + 2 * (l * g->half + z[0]), box, row, to_beside);
+    if (r != g->me) message += 3 * planes * lines * row;
+  }
+}
+
+/* All lines at our z, between boxes and `beside` */
+static void copy_depths(const sd_grid *g, int c, int x, real *message, int to_beside)
+{
+  const long planes = sd_grid_own(g, SD_SHARED_X), row = 2L * sd_grid_own(g, SD_SHARED_Z);
+  const int first = g->me - g->me % g->columns;
+  real *beside = (real *) g->beside;
+  for (int r = first; r < first + g->columns; r++) {
+    const long numbers = sd_grid_length(g, SD_SHARED_LINES, r) * row;
+    real *box = message + (c * planes + x - g->own[SD_SHARED_X][0]) * numbers;
+    copy(beside, r == g->me ? (real *) slab_row(g, c, x, 0) : box, numbers, to_beside);
+    beside += numbers;
+    if (r != g->me) message += 3 * planes * numbers;
+  }
+}
+
+/* The turn in a column, from x to y planes: from each rank to each a box of wave numbers [3][its
+ * x][its y][z]. Rows y of other ranks in our plane x, to the message or from it */
+static void copy_rows(const sd_grid *g, int c, int x, real *message, int to_slab)
+{
+  const long planes = sd_grid_own(g, SD_SHARED_X), row = 2L * sd_grid_own(g, SD_SHARED_Z);
+  for (int r = g->me % g->columns; r < g->rows * g->columns; r += g->columns) {
+    int y[2];
+    if (r == g->me) continue;
+    sd_grid_range_of(g, SD_SHARED_Y, r, y);
+    const long rows = y[1] - y[0];
+    copy((real *) slab_row(g, c, x, y[0]),
+         message + (c * planes + x - g->own[SD_SHARED_X][0]) * rows * row, rows * row, to_slab);
+    message += 3 * planes * rows * row;
+  }
+}
+
+/* Rows of our plane y, one for each x: in the slab, or where other ranks' have come in; to `beside`
+ * or from it */
+static void copy_plane(const sd_grid *g, int c, int y, real *message, int to_beside)
+{
+  const long row = 2L * sd_grid_own(g, SD_SHARED_Z), planes = sd_grid_own(g, SD_SHARED_Y);
+  real *beside = (real *) g->beside;
+  for (int r = g->me % g->columns; r < g->rows * g->columns; r += g->columns) {
+    int x[2];
+    sd_grid_range_of(g, SD_SHARED_X, r, x);
+    const long rows = x[1] - x[0];
+    for (long k = 0; k < rows; k++, beside += row)
+      copy(beside,
+           r == g->me ? (real *) slab_row(g, c, x[0] + (int) k, y)
+                      : message + ((c * rows + k) * planes + y - g->own[SD_SHARED_Y][0]) * row,
+           row, to_beside);
+    if (r != g->me) message += 3 * rows * planes * row;
+  }
+}
+
+/* Rows of `beside` that hold nothing, at our z */
+static void clear_rows(const sd_grid *g, int from, int end)
+{
+  const size_t depth = (size_t) sd_grid_own(g, SD_SHARED_Z);
+  memset((waves *) g->beside + (size_t) from * depth, 0, sizeof(waves) * (size_t) (end - from) * depth);
+}
+
+/* What is beside along y to the slab, or back */
+static void forth_along_y(sd_grid *g, int c, int x, real *message)
+{
+  clear_rows(g, g->occupied[1], g->size[1]);
+  FFT(execute_dft)(g->y_forth, g->beside, slab_row(g, c, x, 0));
+  copy_rows(g, c, x, message, 0);
+}
+
+static void back_along_y(sd_grid *g, int c, int x, real *message)
+{
+  copy_rows(g, c, x, message, 1);
+  FFT(execute_dft)(g->y_back, slab_row(g, c, x, 0), g->beside);
+}
+
+/* Rows of `beside` times their heights, along x to `raised` */
+static void raise_rows(sd_grid *g, int c)
+{
+  const long row = 2L * sd_grid_own(g, SD_SHARED_Z);
+  real *beside = (real *) g->beside;
+  for (int x = 0; x < g->occupied[0]; x++)
+    for (long k = 0; k < row; k++) beside[x * row + k] *= (real) g->height[x];
+  FFT(execute_dft)(g->x_forth, g->beside, g->raised[c]);
+}
+
+/* `raised` back along x, and its product with the heights to `beside`; plane c is free. */
+static void add_raised(sd_grid *g, int c)
+{
+  const long row = 2L * sd_grid_own(g, SD_SHARED_Z);
+  real *beside = (real *) g->beside;
+  const real *raised = (const real *) g->plane[c];
+  FFT(execute_dft)(g->x_back, g->raised[c], g->plane[c]);
+  for (int x = 0; x < g->occupied[0]; x++)
+    for (long k = 0; k < row; k++) beside[x * row + k] += (real) g->height[x] * raised[x * row + k];
+}
+
+/* What a sweep starts from, as long as it is there, and what they make of it */
+static void keep_for_sweep(sd_grid *g, int c)
+{
+  const size_t row = 2 * (size_t) sd_grid_own(g, SD_SHARED_Z);
+  memcpy(g->raised[c], g->beside, sizeof(real) * row * (size_t) g->occupied[0]);
+}
+
+static void add_sweep(sd_grid *g, int c)
+{
+  const long numbers = 2L * sd_grid_own(g, SD_SHARED_Z) * g->occupied[0];
+  real *restrict beside = (real *) g->beside;
+  const real *restrict swept = (const real *) g->raised[c];
+  for (long k = 0; k < numbers; k++) beside[k] += swept[k];
+}
+
+/* One y plane: along x, the product, back along x. It stays in the cache meanwhile. */
+static void through_plane(sd_grid *g, int y, sd_grid_multiply *multiply, void *ctx, real *message)
+{
+  void *planes[6];
+  for (int c = 0; c < 3; c++) {
+    planes[c] = g->plane[c];
+    planes[3 + c] = g->raised[c];
+    copy_plane(g, c, y, message, 1);
+    clear_rows(g, g->occupied[0], g->size[0]);
+    FFT(execute_dft)(g->x_forth, g->beside, g->plane[c]);
+    if (g->height) raise_rows(g, c);
+    if (g->sweep) keep_for_sweep(g, c);
+  }
+  multiply(ctx, y, planes);
+  if (g->sweep) g->sweep(g->sweep_ctx, y, (double *const *) (planes + 3));
+  for (int c = 0; c < 3; c++) {
+    FFT(execute_dft)(g->x_back, g->plane[c], g->beside);
+    if (g->height) add_raised(g, c);
+    if (g->sweep) add_sweep(g, c);
+    copy_plane(g, c, y, message, 0);
+  }
+}
+
+/* --- all of it --- */
+
+/* What is in message `from` to the other ranks, what they send to the other message */
+static sd_status exchange(const sd_grid *g, int from, int to_counts, int from_counts)
+{
+  if (g->ranks == 1) return SD_OK;
+  return g->world.exchange(g->world.ctx, g->message[from], g->counts + to_counts * g->ranks,
+                           g->message[1 - from], g->counts + from_counts * g->ranks);
+}
+
+/* From the pieces in the second message, or from what `fill` says, to the slab, and what of it is
+ * others' to the first */
+static sd_status forth(sd_grid *g, sd_grid_fill *fill, void *fill_ctx)
+{
+  real *first = (real *) g->message[0], *second = (real *) g->message[1];
+  const int *x = g->own[SD_SHARED_X], *lines = g->own[SD_SHARED_LINES];
+  double *const fields[3] = {g->plane[0], g->plane[1], g->plane[2]};
+  for (int k = x[0]; k < x[1]; k++) {
+    if (fill)
+      fill(fill_ctx, k, lines[0], lines[1], 2L * g->half, fields);
+    else
+      fill_plane(g, k, second);
+    for (int c = 0; c < 3; c++) {
+      FFT(execute_dft_r2c)(g->z_forth, (real *) g->plane[c], g->beside);
+      if (g->columns == 1)
+        forth_along_y(g, c, k, first);
+      else
+        copy_lines(g, c, k, first, 0);
+    }
+  }
+  if (g->columns == 1) return SD_OK;
+  const sd_status status = exchange(g, 0, ROW_TO, ROW_FROM);
+  for (int k = x[0]; k < x[1] && status == SD_OK; k++)
+    for (int c = 0; c < 3; c++) {
+      copy_depths(g, c, k, second, 1);
+      forth_along_y(g, c, k, first);
+    }
+  return status;
+}
+
+/* From what came back in the first message to the pieces in the second */
+static sd_status back(sd_grid *g)
+{
+  real *first = (real *) g->message[0], *second = (real *) g->message[1];
+  const int *x = g->own[SD_SHARED_X];
+  for (int k = x[0]; k < x[1] && g->columns > 1; k++)
+    for (int c = 0; c < 3; c++) {
+      back_along_y(g, c, k, first);
+      copy_depths(g, c, k, second, 0);
+    }
+  const sd_status status = g->columns > 1 ? exchange(g, 1, ROW_FROM, ROW_TO) : SD_OK;
+  for (int k = x[0]; k < x[1] && status == SD_OK; k++) {
+    for (int c = 0; c < 3; c++) {
+      if (g->columns == 1)
+        back_along_y(g, c, k, first);
+      else
+        copy_lines(g, c, k, first, 1);
+      FFT(execute_dft_c2r)(g->z_back, g->beside, (real *) g->plane[c]);
+    }
+    each_row(g, k, second, take_row);
+  }
+  return status;
+}
+
+static sd_status convolve_values(sd_grid *g, sd_grid_fill *fill, void *fill_ctx,
+                                 sd_grid_multiply *multiply, void *ctx)
+{
+  const int *y = g->own[SD_SHARED_Y];
+  sd_status status = forth(g, fill, fill_ctx);
+  if (status == SD_OK) status = exchange(g, 0, COLUMN_TO, COLUMN_FROM);
+  for (int k = y[0]; k < y[1] && status == SD_OK; k++)
+    through_plane(g, k, multiply, ctx, (real *) g->message[1]);
+  if (status == SD_OK) status = exchange(g, 1, COLUMN_FROM, COLUMN_TO);
+  if (status == SD_OK) status = back(g);
+  if (status == SD_OK) status = exchange(g, 1, PIECES_FROM, PIECES_TO);
+  if (status == SD_OK) copy_pieces(g, (real *) g->message[0], 1);
+  return status;
+}
+
+static sd_status convolve(sd_grid *g, sd_grid_multiply *multiply, void *ctx)
+{
+  copy_pieces(g, (real *) g->message[0], 0);
+  const sd_status status = exchange(g, 0, PIECES_TO, PIECES_FROM);
+  return status == SD_OK ? convolve_values(g, NULL, NULL, multiply, ctx) : status;
+}
+
+#ifdef SD_SINGLE
+const struct sd_grid_fields sd_grid_floats = {plan, forget, convolve, convolve_values};
+#else
+const struct sd_grid_fields sd_grid_doubles = {plan, forget, convolve, convolve_values};
+#endif
