@@ -21,28 +21,28 @@ void FixSphShift::take_away(LAMMPS *lmp)
   if (fix && strcmp(fix->style, STYLE) == 0) lmp->modify->delete_fix(ID);
 }
 
-FixSphShift *FixSphShift::provide(LAMMPS *lmp, bool wanted, bool correction)
+FixSphShift *FixSphShift::provide(LAMMPS *lmp, bool wanted, bool matrices)
 {
   const Fix *fix = Compat::fix(lmp->modify, ID);
   if (fix && strcmp(fix->style, STYLE) != 0)
     fail(lmp,
          "Pair style sph/artVisc/tensCorr: the fix ID " + std::string(ID) +
              " is taken; give that fix another ID");
-  if (!wanted || (fix && static_cast<const FixSphShift *>(fix)->correction != correction))
+  if (!wanted || (fix && static_cast<const FixSphShift *>(fix)->matrices != matrices))
     take_away(lmp);
   if (!wanted) return nullptr;
   if (!Compat::fix(lmp->modify, ID))
-    lmp->modify->add_fix(std::string(ID) + " all " + STYLE + (correction ? " correction" : ""));
+    lmp->modify->add_fix(std::string(ID) + " all " + STYLE + (matrices ? " matrices" : ""));
   return static_cast<FixSphShift *>(Compat::fix(lmp->modify, ID));
 }
 
 FixSphShift::FixSphShift(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), correction(narg > 3), shifts(DU), rest(REST)
+    RowsFix(lmp, narg, arg), matrices(narg > 3), shifts(DU), rest(REST)
 {
   restart_global = 1;
   comm_border = DU;
   std::vector<RowsOfAtoms *> all = {&shifts};
-  if (correction) all.push_back(&rest);
+  if (matrices) all.push_back(&rest);
   keep(all, nullptr, true, WITH_BORDERS);
 }
 
@@ -60,10 +60,10 @@ int FixSphShift::unpack_border(int n, int first, double *buf)
 
 void FixSphShift::keep_rows(int n, const double *order, const double *kick)
 {
-  const size_t columns = correction ? 16 : 8;
+  const size_t columns = matrices ? 16 : 8;
   for (int i = 0; i < n; i++) std::copy_n(order + columns * i + 4, DU, shifts.give(i));
   has_rows = 1.0;
-  if (!correction) return;
+  if (!matrices) return;
   for (int i = 0; i < atom->nlocal; i++) {
     double *row = rest.give(i);
     std::copy_n(order + columns * i + 8, 6, row);
@@ -73,10 +73,10 @@ void FixSphShift::keep_rows(int n, const double *order, const double *kick)
 
 void FixSphShift::put_back(double *order, double *kick) const
 {
-  const size_t columns = correction ? 16 : 8;
+  const size_t columns = matrices ? 16 : 8;
   for (int i = 0; i < atom->nlocal; i++) {
     std::copy_n(shifts[i], DU, order + columns * i + 4);
-    if (!correction || !rest.has(i)) continue;    // a new atom: B and kick of this moment
+    if (!matrices || !rest.has(i)) continue;    // a new atom: B and kick of this moment
     std::copy_n(rest[i], 6, order + columns * i + 8);
     std::copy_n(rest[i] + 6, 3, kick + 3 * (size_t) i);
   }

@@ -14,7 +14,7 @@ class FixSphShift : public RowsFix {
 
   /* That of this LAMMPS, made anew unless it is of this kind; wanted false: nullptr, and none is
    * left. */
-  static FixSphShift *provide(LAMMPS_NS::LAMMPS *lmp, bool wanted, bool correction);
+  static FixSphShift *provide(LAMMPS_NS::LAMMPS *lmp, bool wanted, bool matrices);
   /* For a destructor: none is left, and a fix of the user's with its ID stays. */
   static void take_away(LAMMPS_NS::LAMMPS *lmp);
 
@@ -27,8 +27,8 @@ class FixSphShift : public RowsFix {
   const double *du() { return shifts.array()[0]; }
   /* Has there been a step? */
   bool filled() const { return has_rows != 0.0; }
-  /* To and from the pair style's rows of sd_sph_order.h: du of all n, and with correction B and
-   * kick of this rank's. */
+  /* To and from the pair style's rows of sd_sph_order.h: du of all n, and with pliant shift and
+   * correction B and kick of this rank's. */
   void keep_rows(int n, const double *order, const double *kick);
   void put_back(double *order, double *kick) const;
 
@@ -37,7 +37,7 @@ class FixSphShift : public RowsFix {
   std::vector<SavedNumbers> saved() override { return {{"filled", &has_rows}}; }
 
  private:
-  const bool correction;
+  const bool matrices;
   double has_rows = 0.0;
   // du; B and kick
   AtomArray shifts, rest;

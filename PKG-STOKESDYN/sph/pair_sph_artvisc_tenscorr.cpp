@@ -73,7 +73,7 @@ void PairSph::parse()
 {
   for (double &value : defaults) value = NAN;
   model = sd_sph_model();
-  shifts = corrects = false;
+  shifts = pliant = corrects = false;
   law = SD_SPH_NEWTON;
   Keywords in(lmp, voice.command, args);
   if (!in.next()) voice.fail("the kernel is missing: give cubicspline or wendland, then the smoothing length h");
@@ -108,11 +108,20 @@ void PairSph::parse()
          if (model.friction == SD_SPH_LAPLACIAN) in.take("laplacian");
        }},
       {"rheology", [&] { read_law(in); }},
-      {"shift", [&] { shifts = in.yes_no(); }},
+      {"shift",
+       [&] {
+         // no word that is the name of a pair style: hybrid takes it for the next one
+         enum { NO, YES, PLIANT };
+         const size_t how = in.choice({"no", "yes", "pliant"});
+         shifts = how != NO;
+         pliant = how == PLIANT;
+       }},
       {"correction", [&] { corrects = in.yes_no(); }},
   });
   in.require(shifts || !corrects || !in.given("shift"),
              "correction yes switches shift on: leave shift no out");
+  in.require(!pliant || !corrects,
+             "correction yes has a shift of its own, which has nothing that resists: leave shift pliant out");
   shifts = shifts || corrects;
   in.require(law == SD_SPH_NEWTON || model.friction,
              "keyword rheology needs keyword viscosity, whose number is mu of the law");

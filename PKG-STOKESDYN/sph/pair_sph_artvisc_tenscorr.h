@@ -114,7 +114,7 @@ class PairSph : public LAMMPS_NS::Pair {
 
   // settings
   std::vector<std::string> args;    // of pair_style, for restart files
-  bool shifts = false, corrects = false;
+  bool shifts = false, pliant = false, corrects = false;
   sd_sph_law law = SD_SPH_NEWTON;
   double defaults[NPARAMETERS];
   // by pair_coeff (NaN: not given), and in use

@@ -222,7 +222,7 @@ void PairSph::tell_of_belts()
  * as heavy as the water is then held where it is. After the first force, which has made the pressures. */
 void PairSph::look_at_bodies()
 {
-  if (corrects || model.dimension != domain->dimension) return;
+  if (model.dimension != domain->dimension) return;
   for (int k = 0; k < lmp->modify->nfix; k++) {
     Fix *fix = lmp->modify->fix[k];
     int dim;
@@ -253,12 +253,13 @@ void PairSph::look_at_bodies_of(const Fix *rigid, const int *body, const double 
     const double *sums = &all[(size_t) NSUMS * k], V = sums[VOLUME], weight = fabs(sums[OF_WATER] - mass[k]) * fall;
     if (!(V > 0.0 && fall > 0.0)) continue;
     const double pressure = sums[PRESSURE] / V, length = pow(V, 1.0 / D);
-    const double resists = length * sd_sph_arrangement(model.kernel, D, sums[WIDTH] / V, 1.0, pressure, V);
+    const double resists = length * sd_sph_arrangement(&model, sums[WIDTH] / V, 1.0, pressure, V);
     if (!(weight < resists)) continue;
     wall->voice.warn("body " + std::to_string(k + 1) + " of fix " + rigid->id + " is moved by " + text(weight) +
                      ", its weight less that of the water; under the pressure " + text(pressure) +
                      " the arrangement of the particles resists with " + text(resists) +
-                     " when it goes its own length: it will be too slow, or stay; use h = 3 dx");
+                     " when it goes its own length: it will be too slow, or stay; use " +
+                     (model.scheme == SD_SPH_SHIFT_PLIANT ? "" : "shift pliant, or ") + "h = 3 dx");
     return;
   }
 }

@@ -140,7 +140,7 @@ void PairSph::choose_scheme()
 {
   model.delta = continuity && leapfrog ? continuity->delta : 0.0;
   const bool volume = continuity && continuity->volume;
-  const std::string what = std::string(corrects ? "correction" : "shift") + " yes ";
+  const char *what = corrects ? "correction yes " : pliant ? "shift pliant " : "shift yes ";
   auto refuse = [&](bool when, const std::string &why) {
     if (when) voice.fail(what + why);
   };
@@ -158,6 +158,7 @@ void PairSph::choose_scheme()
            "does not go with fix wall/sph and wall/region/sph: there are no particles behind such a "
            "wall; use fix wall/adami/sph or shift yes");
   }
+  refuse(pliant && volume, "does not go with volume yes of fix sph/density/continuity: use shift yes");
   if (volume && (!leapfrog || model.tenscorr))
     voice.fail("volume yes of fix sph/density/continuity needs fix nve/sph, and does not go with "
                "tensCorr");
@@ -165,6 +166,7 @@ void PairSph::choose_scheme()
       : volume && shifts ? SD_SPH_VOLUME_SHIFT
       : volume          ? SD_SPH_VOLUME
       : corrects        ? SD_SPH_CORRECTION
+      : pliant            ? SD_SPH_SHIFT_PLIANT
       : shifts          ? SD_SPH_SHIFT
                         : SD_SPH_PLAIN;
   if (grains && !leapfrog)
@@ -177,7 +179,7 @@ void PairSph::choose_scheme()
                                   "volume of a particle: use shift yes"
                                 : "does not go with fix sph/density/corr, which would smear water into the grains: "
                                   "use delta of fix sph/density/continuity");
-  state = FixSphShift::provide(lmp, shifts, corrects);
+  state = FixSphShift::provide(lmp, shifts, corrects || pliant);
   shared = sd_sph_level_of(&model) == SD_SPH_RATE;
 }
 
@@ -261,7 +263,7 @@ void PairSph::setup()
   if (needs_velocity && domain->deform_vremap && !fixes_of(lmp, "sph").empty())
     voice.fail("fix deform with remap v: fix sph extrapolates velocities too early, before LAMMPS "
                "adds the jump at the faces that glide; use fix nve/sph");
-  if (domain->deform_vremap && (model.scheme == SD_SPH_SHIFT || model.scheme == SD_SPH_VOLUME_SHIFT))
+  if (domain->deform_vremap && finds_surface())
     voice.fail("fix deform with remap v: the momentum that shift carries would differ on the two "
                "sides of a face that glides; use correction yes");
 }

@@ -284,7 +284,7 @@ void PairSph::close_sums()
   const int n = particles.n, columns = sd_sph_columns(&model);
   rate.assign(n + 1, 0.0);
   order.resize(columns * (size_t) (n + 1));
-  kick.resize(corrects ? 3 * (size_t) atom->nlocal + 1 : 0);
+  kick.resize(corrects || pliant ? 3 * (size_t) atom->nlocal + 1 : 0);
   const double least = update->setupflag ? 0.6 : 0.5;
   const sd_sph_closing closing = {atom->nlocal, sums.data(), atom->mask, own_vest_bits,
                                   least,        rate.data(), order.data(), kick.data()};

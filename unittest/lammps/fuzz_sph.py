@@ -35,7 +35,7 @@ ARTVISC = [Number(lambda v: v >= 0, ["0.1", "0"], ["-1"])] * 2 + [Number(lambda 
 SPACING = positive("0.01", border=["0", "-1", "0.03"])
 SOUND = positive("20", "25")
 SPH_PAIR = {"artVisc": ARTVISC, "tensCorr": [NOT_NEGATIVE, SPACING], "viscosity": [positive("1e-3", odd=lambda v: v == 0), Maybe("central", "laplacian")],
-            "shift": [YES_NO], "correction": [YES_NO]}
+            "shift": [Choice("yes", "yes", "no", "pliant")], "correction": [YES_NO]}
 SPH_DENSITY = {"delta": [Number(lambda v: v >= 0, ["0", "0.1", "0.1", "0.2"], ["-1", "1e300"])], "volume": [YES_NO]}
 SPH_COEFF = {"h": [LENGTH], "c": [SOUND], "alpha": [NOT_NEGATIVE], "beta": [NOT_NEGATIVE], "deltap": [SPACING]}
 KERNELS = ["cubicspline", "wendland", "cubicspline2d", "wendland2d"]
@@ -75,7 +75,7 @@ def make_sph_pair(case):
         case.says(ODD, "")      # many times the box
     case.extreme |= violent(words)
     case.refuse_if("artVisc" in case.settings and not c, "artVisc")
-    moved = [name for name in ("shift", "correction") if case.settings.get(name, [""])[0] == "yes"]
+    moved = [name for name in ("shift", "correction") if case.settings.get(name, [""])[0] in ("yes", "pliant")]
     case.refuse_if(moved, "shift", "correction")    # the scene has no delta
     case.refuse_if("tensCorr" in case.settings and float(case.settings["tensCorr"][1]) >= 2 * h, "deltap")
 
@@ -103,14 +103,16 @@ def make_sph_order(case):
     names = ("shift", "correction", "volume")
     if not case.judge(words, SPH_PAIR):
         return
-    case.refuse_if(yes("correction") and case.value("shift") == "no", *names)
+    pliant = case.value("shift") == "pliant"
+    case.refuse_if(yes("correction") and case.value("shift") in ("no", "pliant"), *names)
     if not case.judge(density, SPH_DENSITY):
         return
     corrects, volume, tensile = yes("correction"), yes("volume"), "tensCorr" in case.settings
     case.refuse_if(volume and (tensile or mover == "sph"), *names)
     case.refuse_if(tensile and float(case.settings["tensCorr"][1]) >= 2 * float(h), "deltap")
-    if not (corrects or yes("shift")):
+    if not (corrects or yes("shift") or pliant):
         return
+    case.refuse_if(pliant and volume, *names)
     case.refuse_if(tensile or mover == "sph" or kernel == "wendland2d", *names)
     case.refuse_if(not float(case.value("delta", "0")) > 0, *names)
     case.refuse_if(kernel == "cubicspline" and not corrects, *names)

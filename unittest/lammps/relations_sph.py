@@ -6,7 +6,7 @@ from relations_scene import Scene, until_settled
 
 OPTIONS = {
     "dim": [2, 2, 3], "wide": [1, 1, 1, 2], "space": ["full", "tank", "tank", "column", "channel", "ends", "body"],
-    "scheme": ["plain", "delta", "shift", "correction", "summation"], "volume": ["no", "no", "yes"], "fluids": [1, 1, 2],
+    "scheme": ["plain", "delta", "shift", "shift", "pliant", "correction", "summation"], "volume": ["no", "no", "yes"], "fluids": [1, 1, 2],
     "kernel": ["wendland", "cubicspline"], "artVisc": ["no", "yes"], "tensCorr": ["no", "no", "yes"],
     "viscosity": ["no", "central", "laplacian"], "rheology": ["no", "no", "bingham", "carreau"], "filter": ["no", "no", "yes"],
     "state": ["Tait", "Tait", "tension no", "relativ", "absolut"],
@@ -26,8 +26,10 @@ def lawful(o, no):
     no(o["scheme"] == "correction", plane="no")
     no(o["scheme"] == "summation" and o["space"] in ("ends", "body"), scheme="plain")
     no(o["scheme"] == "summation", volume="no", filter="no")
-    no(o["scheme"] in ("shift", "correction"), tensCorr="no", filter="no")
-    no(o["scheme"] == "shift", kernel="wendland")
+    no(o["scheme"] in ("shift", "pliant", "correction"), tensCorr="no", filter="no")
+    no(o["scheme"] in ("shift", "pliant"), kernel="wendland")
+    no(o["scheme"] == "pliant" and (o["fluids"] == 2 or o["grains"] == "yes"), scheme="shift")
+    no(o["scheme"] == "pliant", volume="no")
     no(o["volume"] == "yes", tensCorr="no", filter="no")
     no(o["fluids"] == 2, volume="yes" if o["scheme"] != "summation" else "no", filter="no")
     no(o["fluids"] == 2 and (o["scheme"] == "summation" or o["space"] in ("ends", "body")), fluids=1)
@@ -132,13 +134,13 @@ def commands(s, o, d, up, lo, hi, each):
     s.groups = ["group grains type 5", "group moves type 1 4 5"] * grains
     s.groups += ["group fluid type 1 4", "group wall type 2 3", "group first type 1 2 3", "group second type 4"]
     s.define = [f"neighbor <L {o['skin']}> bin", "neigh_modify delay 0 every 1 check yes"]
-    shifts = o["scheme"] in ("shift", "correction")
+    shifts = o["scheme"] in ("shift", "pliant", "correction")
     words = f"{o['kernel']} <L 1.3>" + " artVisc 0.1 0.0 <area 0.01>" * (o["artVisc"] == "yes")
     words += " tensCorr 0.2 <L 1.0>" * (o["tensCorr"] == "yes")
     words += f" viscosity <eta{d} 0.05> {o['viscosity']}" * (o["viscosity"] != "no")
     words += {"bingham": f" rheology bingham <P{d} 0.02> <eta{d} 0.5>",
               "carreau": f" rheology carreau <t 2.0> 0.4 <eta{d} 0.5>"}.get(o["rheology"], "")
-    words += {"shift": " shift yes", "correction": " correction yes"}.get(o["scheme"], "")
+    words += {"shift": " shift yes", "pliant": " shift pliant", "correction": " correction yes"}.get(o["scheme"], "")
     coefficients = "c <V 10>" + " deltap <L 1.0>" * shifts
     s.pair = [("sph/artVisc/tensCorr", words, coefficients)]
     if grains:

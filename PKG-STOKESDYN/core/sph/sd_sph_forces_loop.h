@@ -14,7 +14,11 @@ typedef struct {
 } terms;
 
 /* Momentum goes along with du: of correction it is an acceleration. */
-#define CARRIES(has) ((has).scheme == SD_SPH_SHIFT || (has).scheme == SD_SPH_VOLUME_SHIFT)
+#define CARRIES(has)                                                                              \
+  ((has).scheme == SD_SPH_SHIFT || (has).scheme == SD_SPH_SHIFT_PLIANT ||                           \
+   (has).scheme == SD_SPH_VOLUME_SHIFT)
+
+#define ROW_OF_ORDER(has) ((has).scheme == SD_SPH_SHIFT_PLIANT ? 16 : 8)
 
 #define CORRECTS(has) \
   ((has).scheme == SD_SPH_CORRECTION || (has).scheme == SD_SPH_VOLUME_CORRECTION)
@@ -24,7 +28,7 @@ typedef struct {
 typedef struct {
   int index;
   row4 x, v, du;
-  vec m;
+  vec m, B[8];
   const sd_sph_coefficients *row;
 } particle;
 
@@ -37,12 +41,15 @@ typedef struct {
 INLINE particle particle_of(const sd_sph_model *model, const sd_sph_particles *p, int i, terms has)
 {
   const int many = has.many;
-  return (particle){.index = i,
-                    .x = load4(p->x4 + 4 * (size_t) i),
-                    .v = load4(p->v4 + 4 * (size_t) i),
-                    .du = CARRIES(has) ? load4(p->order + 8 * (size_t) i + 4) : (row4){0},
-                    .m = all(many ? p->m[i] : p->mass),
-                    .row = ROW_OF(i)};
+  particle of = {.index = i,
+                 .x = load4(p->x4 + 4 * (size_t) i),
+                 .v = load4(p->v4 + 4 * (size_t) i),
+                 .m = all(many ? p->m[i] : p->mass),
+                 .row = ROW_OF(i)};
+  if (CARRIES(has)) of.du = load4(p->order + ROW_OF_ORDER(has) * (size_t) i + 4);
+  if (has.scheme == SD_SPH_SHIFT_PLIANT || CORRECTS(has))
+    for (int c = 0; c < 8; c++) of.B[c] = all(p->order[16 * (size_t) i + 8 + c]);
+  return of;
 }
 
 INLINE pairs_of_one meet(const sd_sph_particles *p, const particle *i, const int j[LANES],
@@ -107,6 +114,29 @@ INLINE vec central(const pairs_of_one *q, vec visc, vec ratio)
   return visc * q->inverse * ratio * q->vd / (q->r2 + 0.001 / (q->inv_h * q->inv_h));
 }
 
+/* y = B d for B xx yy zz xy | xz yz */
+INLINE void turn(const vec B[6], const vec d[3], vec y[3])
+{
+  y[0] = B[0] * d[0] + B[3] * d[1] + B[4] * d[2];
+  y[1] = B[3] * d[0] + B[1] * d[1] + B[5] * d[2];
+  y[2] = B[4] * d[0] + B[5] * d[1] + B[2] * d[2];
+}
+
+/* (A_i B_i + A_j B_j) d. A wall has the B of its partner, so that all of both pressures stands with that
+ * one. */
+INLINE void through_both(const sd_sph_particles *p, const particle *i, const int j[LANES],
+                         const pairs_of_one *q, vec y[3])
+{
+  const vec both = q->A_i + q->A_j;
+  vec B[8];
+  gather(p->order + 8, 16, j, B);
+  gather(p->order + 12, 16, j, B + 4);
+  const yes_no wall_i = i->B[6] > 0.5, wall_j = B[6] > 0.5;
+  const vec mine = where(wall_j, both, where(wall_i, all(0.0), q->A_i)), theirs = both - mine;
+  for (int c = 0; c < 6; c++) B[c] = mine * i->B[c] + theirs * B[c];
+  turn(B, q->d, y);
+}
+
 /* The force on i that is opposite to that on j: all of it, but for the slope of the pressure with
  * correction. */
 INLINE void opposite_forces(const sd_sph_model *model, const sd_sph_particles *p, const particle *i,
@@ -119,7 +149,7 @@ INLINE void opposite_forces(const sd_sph_model *model, const sd_sph_particles *p
   if (has.friction) visc = COEFFICIENT(visc);
   if (has.friction && p->mu) visc *= mean_viscosity(p, i->index, j);
   vec bracket = q->A_i + q->A_j;
-  if (CORRECTS(has)) bracket = all(0.0);
+  if (has.scheme == SD_SPH_SHIFT_PLIANT || CORRECTS(has)) bracket = all(0.0);
   if (has.tenscorr) {
     const vec distance = smaller(root(q->r2) * q->inv_h, all(2.0));
     bracket += tension(model->epsilon, q->A_i, q->A_j, COEFFICIENT(tens) * K(has.kernel, distance));
@@ -136,10 +166,15 @@ INLINE void opposite_forces(const sd_sph_model *model, const sd_sph_particles *p
     const vec rub = q->m * visc * q->g * ratio * q->inverse;
     for (int c = 0; c < 3; c++) F[c] += rub * q->u[c];
   }
+  if (has.scheme == SD_SPH_SHIFT_PLIANT) {
+    vec pressed[3];
+    through_both(p, i, j, q, pressed);
+    for (int c = 0; c < 3; c++) F[c] -= q->m * q->g * pressed[c];
+  }
   /* V_a V_b rho_a = m_a m_b / rho_b: momentum that a takes away, and that b brings. */
   if (CARRIES(has)) {
     vec du[4], mine = all(0.0), theirs = all(0.0);
-    gather(p->order + 4, 8, j, du);
+    gather(p->order + 4, ROW_OF_ORDER(has), j, du);
     for (int c = 0; c < 3; c++) {
       mine += i->du[c] * q->d[c];
       theirs += du[c] * q->d[c];
@@ -192,14 +227,6 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
   return least_of(nearest);
 }
 
-/* y = B d for B xx yy zz xy | xz yz */
-INLINE void turn(const vec B[6], const vec d[3], vec y[3])
-{
-  y[0] = B[0] * d[0] + B[3] * d[1] + B[4] * d[2];
-  y[1] = B[3] * d[0] + B[1] * d[1] + B[5] * d[2];
-  y[2] = B[4] * d[0] + B[5] * d[1] + B[2] * d[2];
-}
-
 /* B_i d, and d.B d / r^2 with the mean of the two. Where one of them is a wall, it has the B of the
  * other. */
 INLINE vec corrected(const double *order, const vec own[8], const int j[LANES], const vec d[3],
@@ -238,11 +265,9 @@ INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const s
   vec nearest = all(HUGE_VAL);
   for (int i = 0; i < list->n; i++) {
     const particle of_i = particle_of(model, p, i, has);
-    const double *B = p->order + 16 * (size_t) i + 8;
-    const int wall = B[6] > 0.5, pairwise = has.friction || wall || each;
-    vec own[8], sum[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
+    const int wall = of_i.B[6][0] > 0.5, pairwise = has.friction || wall || each;
+    vec sum[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
     vec slope[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
-    for (int c = 0; c < 8; c++) own[c] = all(B[c]);
 
     for (int at = 0; at < list->count[i]; at += LANES) {
       const int *j = list->neighbor[i] + at;
@@ -250,7 +275,7 @@ INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const s
       nearest = smaller(q.r2, nearest);
       const vec weight = -q.m * q.inverse * q.g * pressures_on(wall, &q, scheme);
       vec F[3], mine[3], ratio = all(1.0);
-      if (pairwise) ratio = corrected(p->order, own, j, q.d, q.r2, mine);
+      if (pairwise) ratio = corrected(p->order, of_i.B, j, q.d, q.r2, mine);
       opposite_forces(model, p, &of_i, j, &q, ratio, has, F);
       for (int c = 0; c < 3; c++) {
         if (pairwise)
@@ -262,7 +287,7 @@ INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const s
       if (each) each = hand_out(F, LANES, each);
     }
     vec turned[3];
-    turn(own, slope, turned);
+    turn(of_i.B, slope, turned);
     for (int c = 0; c < 3; c++) sum[c] += turned[c];
     store4(f4 + 4 * (size_t) i, over_lanes(sum));
   }

@@ -82,6 +82,16 @@ static double carry(const double *G, const sd_sph_symmetric *B, const double du[
   return trace;
 }
 
+/* B of pliant shift, and its rate where it is not 1. */
+static void make_pliant(const double *sums, const sd_sph_symmetric *B, int inside, double *row, double *rate)
+{
+  static const sd_sph_symmetric UNIT = {{1.0, 1.0, 1.0, 0.0, 0.0, 0.0}};
+  static const double rest[3] = {0.0, 0.0, 0.0};
+  double unused[3];
+  memcpy(row + 8, inside ? B->a : UNIT.a, sizeof(UNIT.a));
+  if (inside) *rate = -row[3] * carry(sums + 14, B, rest, unused);
+}
+
 double sd_sph_shear_rate(int dimension, const double sums[SD_SPH_GRADIENTS])
 {
   const sd_sph_symmetric M = moment(dimension, sums), B = inverse(&M);
@@ -119,12 +129,17 @@ int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_
     memset(du, 0, 4 * sizeof(double));
     /* what is corrected, and where its surface is, goes by all fluids */
     const sd_sph_symmetric whole = level == SD_SPH_MIXTURE ? moment(model->dimension, sums + 24) : M;
-    if (flows && sd_sph_above(&whole, SURFACE))
+    const int inside = flows && sd_sph_above(&whole, SURFACE);
+    if (inside)
       shift(model->dimension, sums, sd_sph_of_pair(model, p, i, i)->support, du);
     if (level >= SD_SPH_VELOCITY) {
       memset(row + 8, 0, 8 * sizeof(double));
       memset(c->kick + 3 * (size_t) i, 0, 3 * sizeof(double));
       row[14] = !flows;
+    }
+    if (model->scheme == SD_SPH_SHIFT_PLIANT)
+      make_pliant(sums, &B, inside, row, &c->rate[i]);
+    else if (level >= SD_SPH_VELOCITY) {
       if (!flows) continue;
       if (!sd_sph_above(&whole, c->least) && stops < 0) stops = i;
       const sd_sph_symmetric all = level == SD_SPH_MIXTURE ? inverse(&whole) : B;

@@ -21,17 +21,20 @@ typedef struct {
   int moving;
   /* correction stops where the smallest eigenvalue of M is below */
   double least;
-  /* out [n], [sd_sph_columns n], and with correction [3 n] the acceleration (G B) du */
+  /* out [n], [sd_sph_columns n], and with pliant shift and correction [3 n] the acceleration (G B) du,
+   * which is that of correction alone */
   double *rate, *order, *kick;
 } sd_sph_closing;
 
-/* rate    the sum; with correction - rho tr(G B). With shift and correction + du . grad rho
+/* rate    the sum; with correction, and pliant where du is not 0 by the rule below, - rho tr(G B).
+ *         With shift and correction + du . grad rho
  * grad rho = B sum V_b (rho_b - rho_a) g d, exact for a linear density; 0 where M is nearly
  * singular (too few neighbours, all in a plane), which leaves the diffusion of Molteni & Colagrossi
  * 2009 there.
  * du      - U x, x = 10 h s, of length 1 at most: the law of Michel et al. 2022 in a bounded form;
  *         0 where an eigenvalue of M is below 0.9, at a free surface and, since M is that of one
- *         fluid, at an interface, but for VOLUME_CORRECTION, where M is that of all; and for walls
+ *         fluid, at an interface, but for VOLUME_CORRECTION, where M is that of all; and for walls.
+ *         There B of pliant is the unit matrix: M says more of the cut than of the arrangement
  * Returns the first particle where correction stops, -1: there is none. */
 int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_closing *c);
 

@@ -9,8 +9,8 @@ int sd_sph_of_fluids(const sd_sph_model *model)
 
 int sd_sph_shifts(const sd_sph_model *model)
 {
-  return model->scheme == SD_SPH_SHIFT || model->scheme == SD_SPH_VOLUME_SHIFT ||
-      sd_sph_corrects(model);
+  return model->scheme == SD_SPH_SHIFT || model->scheme == SD_SPH_SHIFT_PLIANT ||
+      model->scheme == SD_SPH_VOLUME_SHIFT || sd_sph_corrects(model);
 }
 
 int sd_sph_corrects(const sd_sph_model *model)

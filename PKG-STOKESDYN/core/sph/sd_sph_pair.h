@@ -16,6 +16,10 @@
  * Source: Monaghan 1992, 2000. What a scheme changes:
  *   shift        F_a += V_a V_b g [ rho_a v_a (du_a.d) + rho_b v_b (du_b.d) ]: particles that are
  *                moved with v + du carry their momentum along; still F_b = - F_a
+ *   pliant         shift, and the pressure acts by B on both: - m_a m_b g (A_a B_a + A_b B_b) d, still F_b =
+ *                - F_a; rate of a: - rho_a tr(G_a B_a), its adjoint. In rows that a flow has sheared
+ *                M is not 1, and the stress P M of the plain force resists as that of a solid does;
+ *                P M B does not. B is 1, and the rate plain, at a surface; a wall has B of its partner
  *   correction   F_a = - V_a V_b (P_b - P_a) g B_a d, F_b the same with B_b: exact for a linear
  *                pressure, not antisymmetric. In friction g becomes g (d.B d) / r^2, B the mean of
  *                the two. A wall has the B of its partner
@@ -42,6 +46,7 @@ SD_BEGIN_C
 typedef enum {
   SD_SPH_PLAIN,
   SD_SPH_SHIFT,
+  SD_SPH_SHIFT_PLIANT,
   SD_SPH_CORRECTION,
   SD_SPH_VOLUME,
   SD_SPH_VOLUME_SHIFT,
@@ -121,7 +126,7 @@ typedef struct {
    * classes, mu of sd_sph_parameters, which is 1 otherwise */
   const double *mu;
   /* [sd_sph_columns (n+1)] made by sd_sph_order.h: grad rho, rho | du, 0 | B xx yy zz xy | B xz yz,
-   * 1 for walls, 0. Only with delta, shift and correction */
+   * 1 for walls, 0. Only with delta, shift and correction, and B only with pliant and correction */
   const double *order;
 } sd_sph_particles;
 

@@ -4,12 +4,13 @@
 
 #include "sd_sph_internal.h"
 
-/* Diffusion needs the gradient of the density, and M for it; shift also the disorder; correction
+/* Diffusion needs the gradient of the density, and M for it; shift also the disorder; where B acts,
  * also the gradient of the velocity, and of several fluids M of them all. */
 sd_sph_level sd_sph_level_of(const sd_sph_model *model)
 {
   if (sd_sph_corrects(model))
     return sd_sph_of_fluids(model) ? SD_SPH_MIXTURE : SD_SPH_VELOCITY;
+  if (model->scheme == SD_SPH_SHIFT_PLIANT) return SD_SPH_VELOCITY;
   if (sd_sph_shifts(model)) return SD_SPH_DISORDER;
   return model->delta > 0.0 ? SD_SPH_GRADIENT : SD_SPH_RATE;
 }

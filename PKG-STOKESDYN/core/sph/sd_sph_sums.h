@@ -29,7 +29,7 @@ sd_sph_level sd_sph_level_of(const sd_sph_model *model);
 int sd_sph_sum_columns(sd_sph_level level);
 enum { SD_SPH_MAXIMUM = 13 };
 
-/* Columns of a row of order: 4 with delta, 8 with shift, 16 with correction. */
+/* Columns of a row of order: 4 with delta, 8 with shift, 16 with pliant shift and correction. */
 int sd_sph_columns(const sd_sph_model *model);
 enum { SD_SPH_MOST_COLUMNS = 16 };
 

@@ -26,6 +26,7 @@ static double all_forces(const sd_sph_model *model, const sd_sph_list *list,
   switch (model->scheme) {
     FORCES(SD_SPH_PLAIN);
     FORCES(SD_SPH_SHIFT);
+    FORCES(SD_SPH_SHIFT_PLIANT);
     FORCES(SD_SPH_VOLUME);
     FORCES(SD_SPH_VOLUME_SHIFT);
     default: return 0.0; /* corrected: all_slopes */

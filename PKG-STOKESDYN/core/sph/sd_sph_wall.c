@@ -177,11 +177,13 @@ double sd_sph_wall_particle(const sd_sph_wall *wall, const double s[8], const do
   return P;
 }
 
-double sd_sph_arrangement(sd_sph_kernel kernel, int dimension, double h, double spacing, double P, double V)
+double sd_sph_arrangement(const sd_sph_model *model, double h, double spacing, double P, double V)
 {
+  if (sd_sph_corrects(model)) return 0.0;
   const double pi = 3.14159265358979323846;
-  const double smooth = kernel == SD_SPH_WENDLAND ? 2.0 : 1.3, width = smooth * spacing / h;
-  const double part = kernel == SD_SPH_WENDLAND ? (dimension == 3 ? 0.014 : 0.01) : 0.07;
-  const double G = part * P * width * width * width;
-  return dimension == 3 ? 6.0 * pi * G * cbrt(3.0 * V / (4.0 * pi)) : 2.0 * pi * G;
+  const int wendland = model->kernel == SD_SPH_WENDLAND;
+  const double width = (wendland ? 2.0 : 1.3) * spacing / h;
+  const double part = !wendland ? 0.07 : model->dimension == 3 ? 0.014 : 0.01;
+  const double left = model->scheme == SD_SPH_SHIFT_PLIANT ? 0.2 : 1.0, G = left * part * P * width * width * width;
+  return model->dimension == 3 ? 6.0 * pi * G * cbrt(3.0 * V / (4.0 * pi)) : 2.0 * pi * G;
 }

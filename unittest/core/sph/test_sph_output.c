@@ -173,15 +173,23 @@ static void a_wall_that_slides_does_not_turn(void **state)
 }
 
 /* A cylinder with 2 pi G a length of it, a sphere of the radius R with 6 pi G R, G from the page of the pair
- * style: 0.01 P and 0.014 P with wendland at h of 2 spacings, 0.005 P at 2.5, 0.07 P with the cubic spline. */
+ * style: 0.01 P and 0.014 P with wendland at h of 2 spacings, 0.005 P at 2.5, 0.07 P with the cubic spline. A fifth
+ * with pliant shift, nothing with correction. */
 static void particles_hold_a_body_as_a_weak_solid(void **state)
 {
   (void) state;
   const double pi = acos(-1.0), P = 4900.0, dx = 0.02, R = 0.3, V = 4.0 / 3.0 * pi * R * R * R;
-  CHECK_NEAR(sd_sph_arrangement(SD_SPH_WENDLAND, 2, 2.0 * dx, dx, P, 0.7), 2.0 * pi * 0.01 * P, 1e-9);
-  CHECK_NEAR(sd_sph_arrangement(SD_SPH_WENDLAND, 2, 2.5 * dx, dx, P, 0.7), 2.0 * pi * 0.005 * P, 0.03 * 154.0);
-  CHECK_NEAR(sd_sph_arrangement(SD_SPH_WENDLAND, 3, 2.0 * dx, dx, P, V), 6.0 * pi * 0.014 * P * R, 1e-9);
-  CHECK_NEAR(sd_sph_arrangement(SD_SPH_CUBICSPLINE, 2, 1.3 * dx, dx, P, 0.7), 2.0 * pi * 0.07 * P, 1e-9);
+  const sd_sph_model flat = {.kernel = SD_SPH_WENDLAND, .dimension = 2}, deep = {.kernel = SD_SPH_WENDLAND, .dimension = 3},
+                     spline = {.kernel = SD_SPH_CUBICSPLINE, .dimension = 2};
+  CHECK_NEAR(sd_sph_arrangement(&flat, 2.0 * dx, dx, P, 0.7), 2.0 * pi * 0.01 * P, 1e-9);
+  CHECK_NEAR(sd_sph_arrangement(&flat, 2.5 * dx, dx, P, 0.7), 2.0 * pi * 0.005 * P, 0.03 * 154.0);
+  CHECK_NEAR(sd_sph_arrangement(&deep, 2.0 * dx, dx, P, V), 6.0 * pi * 0.014 * P * R, 1e-9);
+  CHECK_NEAR(sd_sph_arrangement(&spline, 1.3 * dx, dx, P, 0.7), 2.0 * pi * 0.07 * P, 1e-9);
+  sd_sph_model moved = flat;
+  moved.scheme = SD_SPH_SHIFT_PLIANT;
+  CHECK_NEAR(sd_sph_arrangement(&moved, 2.0 * dx, dx, P, 0.7), 2.0 * pi * 0.002 * P, 1e-9);
+  moved.scheme = SD_SPH_CORRECTION;
+  CHECK_NEAR(sd_sph_arrangement(&moved, 2.0 * dx, dx, P, 0.7), 0.0, 0.0);
 }
 
 int main(void)

@@ -224,7 +224,7 @@ DEEP = """
     set group all sph/rho v_rho
     neighbor 0.006 bin
     neigh_modify delay 0 every 1 exclude type 2 2 exclude type 3 3 exclude type 2 3
-    pair_style sph/artVisc/tensCorr wendland $({h}*0.02) viscosity 1e-3 central shift yes
+    pair_style sph/artVisc/tensCorr wendland $({h}*0.02) viscosity 1e-3 central {more}
     pair_coeff * * c 30
     fix eos all sph/pressure Tait $(30^2*1000/7) 1000 7 tension no
     fix density all sph/density/continuity delta 0.1
@@ -240,16 +240,90 @@ DEEP = """
 """
 
 
-@pytest.mark.parametrize("s, y, h, held", [(0.98, 0.2, 2, True), (0.5, 0.2, 2, False), (0.995, 0.2, 3, True), (0.94, 0.2, 3, False), (1.04, 0.2, 2, True),
-                                           (0.9, 0.2, 2, True), (0.9, 0.5, 2, False)])
+@pytest.mark.parametrize("s, y, h, held", [(0.98, 0.2, 2, True), (0.5, 0.2, 2, False), (0.995, 0.2, 3, True), (0.94, 0.2, 3, False), (1.02, 0.2, 2, True),
+                                           (0.9, 0.2, 2, False), (0.98, 0.5, 2, False)])
 def test_a_body_that_the_arrangement_of_particles_holds_is_warned_of(s, y, h, held, tmp_path):
-    """Its weight less that of the water, |1-s| rho g V, is weighed against 2 pi G L, G = 0.01 P (2 dx/h)^3, L^2 = V: at the depth 0.4 the first is less
-    where |1-s| < 0.175 for h of 2 spacings and 0.052 for 3, at the depth 0.1 where it is less than 0.044."""
-    done = mpirun(1, DEEP.format(s=s, y=y, h=h), tmp_path)
+    """Its weight less that of the water, |1-s| rho g V, is weighed against 2 pi G L, G = 0.002 P (2 dx/h)^3, L^2 = V: at the depth 0.4 the first is
+    less where |1-s| < 0.035 for h of 2 spacings and 0.0104 for 3, at the depth 0.1 where it is less than 0.009."""
+    done = mpirun(1, DEEP.format(s=s, y=y, h=h, more="shift pliant"), tmp_path)
     assert done.returncode == 0, done.stdout
     assert ("body 1 of fix float is moved by" in done.stdout) is held
     if held and s == 0.98:
         weight, pressure, resists = map(float, re.search(r"is moved by (\S+), .*under the pressure (\S+) .*\n?.*resists with (\S+)", done.stdout).groups())
         V = weight / (0.02 * 9810)
         assert V == pytest.approx(np.pi * 0.08**2, rel=0.05) and pressure == pytest.approx(9810 * 0.4, rel=0.02)
-        assert resists == pytest.approx(2 * np.pi * 0.01 * pressure * V**0.5, rel=1e-4)
+        assert resists == pytest.approx(2 * np.pi * 0.002 * pressure * V**0.5, rel=1e-4)
+
+
+@pytest.mark.parametrize("more, part", [("", 0.01), ("shift yes", 0.01), ("shift pliant", 0.002)])
+def test_unless_shift_is_pliant_the_arrangement_holds_five_times_as_much(more, part, tmp_path):
+    done = mpirun(1, DEEP.format(s=0.995, y=0.2, h=2, more=more), tmp_path)
+    assert done.returncode == 0, done.stdout
+    pressure, resists, cure = re.search(r"under the pressure (\S+) .*\n?.*resists with (\S+) when .*stay; use (.*)", done.stdout).groups()
+    assert float(resists) == pytest.approx(2 * np.pi * part * float(pressure) * (0.02**2 * 52) ** 0.5, rel=0.05)
+    assert cure.startswith("h = 3 dx" if "pliant" in more else "shift pliant, or h = 3 dx")
+
+
+SHEARED = """
+    units lj
+    dimension 2
+    atom_style sph
+    atom_modify map array
+    boundary p p p
+    lattice sq 1600 origin 0.5 0.5 0
+    region box block 0 1 0 1 -0.0125 0.0125 units box
+    create_box 1 box
+    create_atoms 1 box
+    mass 1 0.000625
+    set group all sph/rho 1
+    displace_atoms all random {jitter} {jitter} 0 4711 units box
+    variable u atom {u}*sin(2*PI*y)
+    displace_atoms all move v_u 0 0 units box
+    neighbor 0.01 bin
+    pair_style sph/artVisc/tensCorr wendland 0.05 {more}
+    pair_coeff * * c 10
+    fix eos all sph/pressure Tait $(100/7) 1 7 3
+    fix density all sph/density/continuity {density}
+    fix move all nve/sph
+    timestep 1e-3
+    run 0
+"""
+
+
+@pytest.mark.parametrize("jitter", [0, 0.003])
+def test_with_pliant_shift_rows_under_pressure_do_not_resist_shear(jitter):
+    """A wave u = 0.002 sin(2 pi y) that shears a lattice under the pressure 3: F = - V G u'' with G = 0.0036 P in the plain scheme, in which a body
+    that is nearly as heavy as the water comes to rest. With pliant shift it is a thirtieth, and the forces have the sum 0."""
+    def modulus(more, density):
+        F = []
+        for u in (0.0, 0.002):
+            lmp = start()
+            run(lmp, SHEARED.format(u=u, jitter=jitter, more=more, density=density))
+            F.append(by_id(lmp, "f", 3))
+            y = by_id(lmp, "x", 3)[:, 1]
+            lmp.close()
+        assert np.abs(F[1].sum(0)).max() < 1e-12
+        wave = np.sin(2 * np.pi * y)
+        return -((F[1] - F[0])[:, 0] * wave).sum() / (wave**2).sum() / (0.000625 * 4 * np.pi**2 * 0.002) / 3
+    assert modulus("artVisc 0 0 0.01", "") == pytest.approx(0.0036, rel=0.05)
+    assert modulus("shift yes", "delta 0.1") == pytest.approx(0.0036, rel=0.05)
+    assert modulus("shift pliant", "delta 0.1") == pytest.approx(0.0001, abs=0.00003)
+
+
+def test_pliant_shift_is_shift_where_the_surface_cuts_every_support():
+    """A patch of 5 x 5 particles under pressure: B says more of the cut than of the arrangement, and is 1."""
+    F = []
+    for more in ("shift yes", "shift pliant"):
+        lmp = start()
+        patch = SHEARED.format(u=0.002, jitter=0.003, more=more, density="delta 0.1").replace("create_atoms 1 box", "region five block 0.4 0.524 0.4 0.524 INF INF "
+                                                                                              "units box\n    create_atoms 1 region five")
+        run(lmp, patch)
+        F.append(by_id(lmp, "f", 3))
+        lmp.close()
+    assert len(F[0]) == 25 and np.abs(F[0]).max() > 0.01
+    assert np.abs(F[1] - F[0]).max() < 1e-12 * np.abs(F[0]).max()
+
+
+def test_pliant_shift_and_two_fluids():
+    found = message(SHEARED.format(u=0, jitter=0, more="shift pliant", density="delta 0.1 volume yes"))
+    assert "shift pliant does not go with volume yes of fix sph/density/continuity: use shift yes" in found

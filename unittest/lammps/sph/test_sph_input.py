@@ -38,6 +38,8 @@ ONE_LINE = {
     "deltap zero": (STYLE + "wendland 0.012 tensCorr 0.2 0", "keyword tensCorr: '0' must be > 0"),
     "viscosity": (STYLE + "wendland 0.012 viscosity 0", "keyword viscosity: '0' must be > 0"),
     "keyword": (STYLE + "wendland 0.012 artvisc 1 2 3", "unknown keyword 'artvisc'"),
+    "shift": (STYLE + "wendland 0.012 shift hard", "keyword shift: 'hard' is none of: no, yes, pliant"),
+    "pliant correction": (STYLE + "wendland 0.012 shift pliant correction yes", "correction yes has a shift of its own, which has nothing that resists"),
     "coeff keyword": (PAIR + "pair_coeff 1 1 rho 3", "unknown keyword 'rho'"),
     "coeff value": (PAIR + "pair_coeff 1 1 h", "keyword h: value missing"),
     "coeff h": (PAIR + "pair_coeff 1 1 h 0", "keyword h: '0' must be > 0"),
