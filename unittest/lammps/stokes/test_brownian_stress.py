@@ -235,3 +235,41 @@ def test_pressure_of_the_particles_is_ideal_and_virial(simulation):
                   f"fix move all stokes_dynamics/overdamped temperature {KT!r} 5 held held", "compute S all stokes_dynamics/stress",
                   "thermo_style custom step c_S[19]"]).run(0)
     assert sim.lmp.extract_compute("S", 0, 1)[18] == pytest.approx((3 * KT + 2.1 * -2 * 3.5 * (2.1 - 1.7) / 3) / 11.0**3, rel=1e-9)
+
+
+# --- the pressure of a suspension at rest ------------------------------------------------------------------------------------
+
+def hard_spheres(n, phi, sweeps=300, seed=3):
+    """Places of unit spheres in a periodic cube, and its edge: from a cubic lattice, by moves at random that keep them apart"""
+    rng, edge = np.random.default_rng(seed), (4 / 3 * np.pi * n / phi)**(1 / 3)
+    m = int(np.ceil((n / 4)**(1 / 3)))
+    corner = np.array([(i, j, k) for i in range(m) for j in range(m) for k in range(m)], float)
+    x = ((corner[:, None] + [(0, 0, 0), (0.5, 0.5, 0), (0.5, 0, 0.5), (0, 0.5, 0.5)]).reshape(-1, 3) * edge / m)[:n]
+    for _ in range(sweeps):
+        for i, move in enumerate(rng.uniform(-0.3, 0.3, (n, 3))):
+            d = x - x[i] - move
+            r = np.linalg.norm(d - edge * np.rint(d / edge), axis=1)
+            r[i] = 9.0
+            if r.min() > 2.0:
+                x[i] += move
+    return x % edge, edge
+
+
+@pytest.mark.parametrize("phi, steps", [(0.3, 500), (0.45, 400)])
+def test_osmotic_pressure_is_that_of_carnahan_and_starling(simulation, tmp_path, phi, steps):
+    """Value 19 of spheres at rest. Springs of stiffness k below a distance of 2 + (pi kT/2k)^1/2 make them as large as hard spheres of radius 1
+    (Barker & Henderson 1967). Its error: of blocks that are long beside the life of a contact."""
+    x, edge = hard_spheres(32, phi)
+    k = 400.0 * KT
+    reach = 2 + (np.pi * KT / (2 * k))**0.5
+    style = [f"pair_style hybrid/overlay soft {reach!r} stokes_dynamics cut_off_distance inf visc {1 / (6 * np.pi)!r} multiblob 12",
+             f"pair_coeff * * soft {k * (reach / np.pi)**2!r}", "pair_coeff * * stokes_dynamics"]
+    sim = simulation(Spheres(x), style, fix=False, dt=2.5e-4 / KT, boundary="p p p", box=[(0.0, float(edge))] * 3)
+    noise = f"fix move all stokes_dynamics/overdamped temperature {KT!r} 5"
+    sim.commands([noise, "compute S all stokes_dynamics/stress", f"fix out all ave/time 2 1 2 c_S[19] start 4 file {tmp_path}/pressure"]).run(steps)
+    p = np.loadtxt(os.path.join(tmp_path, "pressure"))[:, 1] * edge**3 / (32 * KT)
+    blocks = np.array([part.mean() for part in np.array_split(p[len(p) // 5:], 8)])
+    exact = (1 + phi + phi**2 - phi**3) / (1 - phi)**3
+    error = blocks.std(ddof=1) / len(blocks)**0.5
+    assert error < 0.12 * exact
+    assert blocks.mean() == pytest.approx(exact, abs=4 * error)

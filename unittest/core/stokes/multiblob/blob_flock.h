@@ -1,5 +1,5 @@
 /* Spheres, free or in rigid clumps, as shells of points for the loop of sd_bodies.h: open or in a
- * periodic cube, with films or without. */
+ * periodic cube or above a wall, with films or without. */
 #ifndef BLOB_FLOCK_H
 #define BLOB_FLOCK_H
 
@@ -7,6 +7,7 @@
 
 #include "sd_bodies.h"
 #include "sd_multiblob_shape.h"
+#include "sd_multiblob_wall.h"
 #include "sd_tie.h"
 
 enum { MOST = 40, POINTS = 42 * MOST };
@@ -23,6 +24,8 @@ typedef struct {
   sd_multiblob_mobility M;
   sd_faces_pattern pattern;
   sd_faces faces;
+  /* of an open scene; sign 0: none */
+  sd_wall wall;
   char whole_shell[MOST];
   sd_body body[MOST];
   int whole[MOST], sphere[POINTS], row[POINTS];
@@ -92,7 +95,7 @@ static inline blob_flock *clumps_at(int points, int clumps, int m, const double 
 static inline sd_bodies place(blob_flock *f, double side, double tolerance)
 {
   blobs *s = f->s;
-  const sd_law law = {.tensor = SD_TENSOR_RPY};
+  const sd_law law = {.tensor = SD_TENSOR_RPY, .wall = f->wall};
   const int own = s->m.n, points = own * s->n;
   for (int k = 0; k < 3 * s->n && side > 0.0; k++) s->x[k] -= side * floor(s->x[k] / side);
   if (!s->r) blobs_expand(s);
@@ -121,8 +124,11 @@ static inline sd_bodies place(blob_flock *f, double side, double tolerance)
     for (int k = 0; k < shape->points.m; k++) f->row[own * i + k] = own * i + shape->row[k];
     for (int k = i; k < i + shape->spheres; k++) {
       f->whole[k] = bodies;
-      for (int d = 0; d < 3 && f->m; d++)
-        f->arm[3 * k + d] = s->x[3 * k + d] - f->centre[3 * bodies + d];
+      for (int d = 0; d < 3 && f->m; d++) { /* though the sphere may be across a face of the cube */
+        double *arm = f->arm + 3 * k + d;
+        *arm = s->x[3 * k + d] - f->centre[3 * bodies + d];
+        if (side > 0.0) *arm -= side * rint(*arm / side);
+      }
     }
   }
   for (int k = 0; k < points; k++) {
@@ -147,6 +153,13 @@ static inline void tie_with_films(blob_flock *f, sd_bodies *A)
   blobs *s = f->s;
   s->R = calloc((size_t) s->size * (size_t) s->size, sizeof(double));
   blobs_add_films(s, 1.0, NULL);
+  for (int i = 0; i < s->n && f->wall.sign != 0; i++) {
+    double B[36], E[6];
+    assert_int_equal(sd_multiblob_wall_film(&s->m, &f->wall, s->x + 3 * i, s->a[i], s->r + 3 * s->m.n * i,
+                                            s->m.delta != 0.0, s->floor, 1.0, NULL, B, E),
+                     SD_OK);
+    sd_lubrication_add_own(&s->L, i, B, E);
+  }
   f->tie.L = &s->L;
   A->tie = &f->tie;
 }

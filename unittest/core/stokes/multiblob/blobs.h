@@ -20,6 +20,7 @@ enum { BLOBS_MOST = 64 };
 typedef struct {
   int n, count;
   int owner[27 * BLOBS_MOST];
+  int64_t body[27 * BLOBS_MOST];
   double drift[3 * 27 * BLOBS_MOST];
   double x[3 * 27 * BLOBS_MOST], a[27 * BLOBS_MOST], w[27 * BLOBS_MOST];
 } blob_images;
@@ -224,7 +225,7 @@ static inline blob_images *blobs_images(const blobs *s, double range, const doub
         near = near && (s->side == 0.0 || (x[d] > -reach && x[d] < s->side + reach));
       }
       if (!near) continue;
-      g->a[g->count] = s->a[i], g->w[g->count] = 1.0;
+      g->a[g->count] = s->a[i], g->w[g->count] = 1.0, g->body[g->count] = s->body[i];
       const double moved[3] = {at[0] * s->side, at[1] * s->side, at[2] * s->side};
       if (gradient && shift >= 0) sd_multiply3(gradient, moved, g->drift + 3 * (g->count - s->n));
       g->owner[g->count++] = i;
@@ -251,7 +252,7 @@ static inline void blobs_add_films(blobs *s, double range, const double *gradien
       .n = s->n,
       .n_all = g->count,
       .spheres = {g->x, g->a, g->w},
-      .body = s->side > 0.0 ? NULL : s->body,
+      .body = g->body,
       .drift = g->drift,
       .world = {.ctx = g, .refresh = s->side > 0.0 ? blobs_refresh : NULL},
       .noisy = 1};
