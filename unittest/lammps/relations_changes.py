@@ -73,8 +73,6 @@ RESTARTS = tuple(name for name in PIECES if name.startswith("restart"))
 EXCEPTIONS = [
     (TURNS, triclinic, "LAMMPS has triclinic boxes of one orientation only"),
     (TURNS + ("renumbered", "members"), lambda o: o.get("noise") == "yes", "random numbers belong to atom IDs and to the axes x, y, z"),
-    (("units", "small units"), lambda o: o.get("noise") == "yes" and o.get("motion") == "midpoint" and o.get("rigid") == "yes",
-     "the roots of clumps are those of a splitting nearby, in steps of the unit of length: other numbers of the same noise"),
     (("renumbered",), lambda o: o.get("fluctuation", "none") != "none", "random numbers belong to atom IDs"),
     (TURNS, lambda o: o["model of"] == "vans", "the stream runs along x, and z is up"),
     (("grid 1 1 2",), lambda o: o.get("dim") == 2, "two dimensions"),
