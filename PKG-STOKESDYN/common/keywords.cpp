@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <thread>
 
 using namespace LAMMPS_NS;
 
@@ -53,11 +55,13 @@ void fail(LAMMPS *lmp, const std::string &message)
 void fail_one(LAMMPS *lmp, const std::string &message)
 {
   // LAMMPS ends by MPI_Abort, which drops what the buffers hold: the message, where the output is a file or a pipe.
+  // What another rank than 0 prints goes through a pipe of mpirun, which may drop it as well: mpirun gets time to read.
   try {
     lmp->error->one(FLERR, printable(message));
   } catch (...) {
     if (lmp->screen) fflush(lmp->screen);
     if (lmp->logfile) fflush(lmp->logfile);
+    if (lmp->comm->nprocs > 1) std::this_thread::sleep_for(std::chrono::milliseconds(300));
     throw;
   }
   abort();    // error->one does not return
