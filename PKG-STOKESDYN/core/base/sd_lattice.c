@@ -5,7 +5,7 @@
 
 /* d less so many times the edge along z, y or x: edges are the rows of a lower triangle, so that
  * taking off one leaves the components after it alone */
-static void shift(const double h[6], int edge, double times, double d[3])
+static void lattice_shift(const double h[6], int edge, double times, double d[3])
 {
   const double edges[3][3] = {{h[0], 0.0, 0.0}, {h[5], h[1], 0.0}, {h[4], h[3], h[2]}};
   for (int p = 0; p < 3; p++) d[p] -= times * edges[edge][p];
@@ -20,7 +20,7 @@ static void into_the_box(const double h[6], const int periodic[3], double d[3])
     int done = 1;
     for (int k = 2; k >= 0; k--) {
       const double times = periodic[k] ? round(d[k] / h[k]) : 0.0;
-      if (times != 0.0) shift(h, k, times, d);
+      if (times != 0.0) lattice_shift(h, k, times, d);
       done = done && fabs(times) < 0x1p50;
     }
     if (done) return;
@@ -43,12 +43,12 @@ void sd_closest_image(const double h[6], const int periodic[3], double d[3])
   for (int z = -nz; z <= nz; z++) {
     double at_z[3];
     memcpy(at_z, start, sizeof(at_z));
-    shift(h, 2, z, at_z);
+    lattice_shift(h, 2, z, at_z);
     const double middle = periodic[1] ? round(at_z[1] / h[1]) : 0.0;
     for (int y = -ny; y <= ny; y++) {
       memcpy(image, at_z, sizeof(image));
-      shift(h, 1, middle + y, image);
-      if (periodic[0]) shift(h, 0, round(image[0] / h[0]), image);
+      lattice_shift(h, 1, middle + y, image);
+      if (periodic[0]) lattice_shift(h, 0, round(image[0] / h[0]), image);
       const double sq = image[0] * image[0] + image[1] * image[1] + image[2] * image[2];
       if (!(sq < best * (1.0 - 1e-12))) continue;
       best = sq;

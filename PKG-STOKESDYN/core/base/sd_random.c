@@ -5,7 +5,7 @@
 #include "sd_constants.h"
 
 /* Both halves of a product of 32 by 32 bits */
-static void multiply(uint32_t a, uint32_t b, uint32_t *high, uint32_t *low)
+static void random_multiply(uint32_t a, uint32_t b, uint32_t *high, uint32_t *low)
 {
   const uint64_t product = (uint64_t) a * b;
   *high = (uint32_t) (product >> 32);
@@ -19,8 +19,8 @@ void sd_random_bits(const uint32_t counter[4], const uint32_t key[2], uint32_t o
   uint32_t k0 = key[0], k1 = key[1];
   for (int round = 0; round < 10; round++) {
     uint32_t high0, low0, high2, low2;
-    multiply(UINT32_C(0xD2511F53), c0, &high0, &low0);
-    multiply(UINT32_C(0xCD9E8D57), c2, &high2, &low2);
+    random_multiply(UINT32_C(0xD2511F53), c0, &high0, &low0);
+    random_multiply(UINT32_C(0xCD9E8D57), c2, &high2, &low2);
     c0 = high2 ^ c1 ^ k0;
     c1 = low2;
     c2 = high0 ^ c3 ^ k1;

@@ -10,7 +10,7 @@ static int is_fluid(const sd_sph_film *f, int i)
 }
 
 /* The root of the tree of i; the way there is halved for the next who asks. */
-static int root_of(int *parent, int i)
+static int drops_root_of(int *parent, int i)
 {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
   return i;
@@ -24,14 +24,14 @@ void sd_sph_find_drops(const sd_sph_film *f, int *parent)
   for (int i = 0; i < list->n; i++) {
     if (!is_fluid(f, i)) continue;
     const double *x = f->x4 + 4 * (size_t) i;
-    int mine = root_of(parent, i);
+    int mine = drops_root_of(parent, i);
     for (int m = 0; m < list->count[i]; m++) {
       const int j = list->neighbor[i][m];
       /* of a pair of this rank one side is enough */
       if ((j > i && j < list->n) || j >= f->all || parent[j] == mine || !is_fluid(f, j)) continue;
       const double *y = f->x4 + 4 * (size_t) j, d[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
       if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach)) continue;
-      const int other = root_of(parent, j);
+      const int other = drops_root_of(parent, j);
       if (other < mine)
         mine = parent[mine] = other;
       else
@@ -44,11 +44,11 @@ int sd_sph_name_drops(int all, int *parent, double *name)
 {
   int changed = 0;
   for (int i = 0; i < all; i++) {
-    const int root = root_of(parent, i);
+    const int root = drops_root_of(parent, i);
     if (name[i] < name[root]) name[root] = name[i];
   }
   for (int i = 0; i < all; i++) {
-    const double of_drop = name[root_of(parent, i)];
+    const double of_drop = name[drops_root_of(parent, i)];
     changed |= of_drop < name[i];
     name[i] = of_drop;
   }
@@ -62,7 +62,7 @@ int sd_sph_sum_drops(const sd_sph_film *f, int *parent, const double *name, cons
   for (int i = 0; i < f->all; i++) place[i] = -1;
   for (int i = 0; i < f->list->n; i++) {
     if (!is_fluid(f, i)) continue;
-    int *at = &place[root_of(parent, i)];
+    int *at = &place[drops_root_of(parent, i)];
     if (*at < 0) {
       *at = count++;
       out[*at] = (sd_sph_drop){.name = name[i]};
@@ -82,7 +82,7 @@ static int by_name(const void *a, const void *b)
 }
 
 /* Parts of one drop, which stand beside each other, become one. */
-static int add_up(int count, sd_sph_drop *drops)
+static int drops_add_up(int count, sd_sph_drop *drops)
 {
   int last = -1;
   for (int k = 0; k < count; k++) {
@@ -101,7 +101,7 @@ int sd_sph_keep_momentum(const sd_sph_film *f, int *parent, const int *place, co
                          sd_sph_drop *mine, int all_count, sd_sph_drop *everywhere, double *F, double sum[3])
 {
   qsort(everywhere, (size_t) all_count, sizeof(sd_sph_drop), by_name);
-  const int drops = add_up(all_count, everywhere);
+  const int drops = drops_add_up(all_count, everywhere);
   memset(sum, 0, 3 * sizeof(double));
   for (int k = 0; k < drops; k++)
     for (int d = 0; d < 3 && everywhere[k].held > 0.0; d++) sum[d] += everywhere[k].F[d];
@@ -113,7 +113,7 @@ int sd_sph_keep_momentum(const sd_sph_film *f, int *parent, const int *place, co
   }
   for (int i = 0; i < f->list->n; i++) {
     if (!is_fluid(f, i)) continue;
-    const sd_sph_drop *drop = &mine[place[root_of(parent, i)]];
+    const sd_sph_drop *drop = &mine[place[drops_root_of(parent, i)]];
     for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] -= mass[i] * drop->F[d];
   }
   return drops;

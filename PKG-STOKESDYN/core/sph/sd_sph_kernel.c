@@ -34,7 +34,7 @@ double sd_sph_G(sd_sph_kernel kernel, double q)
 }
 
 /* h^n for n = 2 .. 5 */
-static double power(double h, int n)
+static double kernel_power(double h, int n)
 {
   double p = 1.0;
   while (n-- > 0) p *= h;
@@ -43,10 +43,10 @@ static double power(double h, int n)
 
 double sd_sph_W(sd_sph_kernel kernel, int dimension, double r, double h)
 {
-  return sd_sph_norm(kernel, dimension) / power(h, dimension) * sd_sph_K(kernel, r / h);
+  return sd_sph_norm(kernel, dimension) / kernel_power(h, dimension) * sd_sph_K(kernel, r / h);
 }
 
 double sd_sph_dW_over_r(sd_sph_kernel kernel, int dimension, double r, double h)
 {
-  return sd_sph_norm(kernel, dimension) / power(h, dimension + 2) * sd_sph_G(kernel, r / h);
+  return sd_sph_norm(kernel, dimension) / kernel_power(h, dimension + 2) * sd_sph_G(kernel, r / h);
 }

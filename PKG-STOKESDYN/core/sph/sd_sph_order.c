@@ -57,7 +57,7 @@ static const double SURFACE = 0.9;
  * of 1 / length; R makes it a number, and 5 is where more changes no result (1 to 16 tried).
  * Bounded by the length 1, nobody is moved faster than its neighbours come and go. In two
  * dimensions nobody leaves the plane: beside a body that is 1e-17 off it, z would grow. */
-static void shift(int dimension, const double *sums, double support, double du[3])
+static void order_shift(int dimension, const double *sums, double support, double du[3])
 {
   const double s[3] = {sums[10], sums[11], dimension == 2 ? 0.0 : sums[12]};
   const double U = sums[SD_SPH_MAXIMUM];
@@ -69,7 +69,7 @@ static void shift(int dimension, const double *sums, double support, double du[3
 /* With particles that move with v + du and not v, what one particle carries is no longer that of
  * one piece of fluid: D v / D t along the path has (du . grad) v more, and grad v = G B to second
  * order. Returns tr(G B), the divergence; kick = (G B) du. */
-static double carry(const double *G, const sd_sph_symmetric *B, const double du[3], double kick[3])
+static double order_carry(const double *G, const sd_sph_symmetric *B, const double du[3], double kick[3])
 {
   double Bdu[3], trace = 0.0;
   times(B, du, Bdu);
@@ -89,7 +89,7 @@ static void make_pliant(const double *sums, const sd_sph_symmetric *B, int insid
   static const double rest[3] = {0.0, 0.0, 0.0};
   double unused[3];
   memcpy(row + 8, inside ? B->a : UNIT.a, sizeof(UNIT.a));
-  if (inside) *rate = -row[3] * carry(sums + 14, B, rest, unused);
+  if (inside) *rate = -row[3] * order_carry(sums + 14, B, rest, unused);
 }
 
 double sd_sph_shear_rate(int dimension, const double sums[SD_SPH_GRADIENTS])
@@ -131,7 +131,7 @@ int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_
     const sd_sph_symmetric whole = level == SD_SPH_MIXTURE ? moment(model->dimension, sums + 24) : M;
     const int inside = flows && sd_sph_above(&whole, SURFACE);
     if (inside)
-      shift(model->dimension, sums, sd_sph_of_pair(model, p, i, i)->support, du);
+      order_shift(model->dimension, sums, sd_sph_of_pair(model, p, i, i)->support, du);
     if (level >= SD_SPH_VELOCITY) {
       memset(row + 8, 0, 8 * sizeof(double));
       memset(c->kick + 3 * (size_t) i, 0, 3 * sizeof(double));
@@ -144,7 +144,7 @@ int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_
       if (!sd_sph_above(&whole, c->least) && stops < 0) stops = i;
       const sd_sph_symmetric all = level == SD_SPH_MIXTURE ? inverse(&whole) : B;
       memcpy(row + 8, all.a, sizeof(all.a));
-      c->rate[i] = -row[3] * carry(sums + 14, &all, du, c->kick + 3 * (size_t) i);
+      c->rate[i] = -row[3] * order_carry(sums + 14, &all, du, c->kick + 3 * (size_t) i);
     }
     /* the density that the particle finds where it is moved to */
     c->rate[i] += du[0] * row[0] + du[1] * row[1] + du[2] * row[2];

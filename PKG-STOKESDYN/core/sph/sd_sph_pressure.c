@@ -3,7 +3,7 @@
 #include <math.h>
 
 /* x^gamma; the exponent of water, 7, and other small integers by multiplication. */
-static double power(double x, double gamma)
+static double pressure_power(double x, double gamma)
 {
   const int n = (int) gamma;
   if (n != gamma || n < 1 || n > 16) return pow(x, gamma);
@@ -22,7 +22,7 @@ double sd_sph_pressure(const sd_sph_state *s, double rho)
     case SD_SPH_RELATIV:
       return s->B * (rho - s->rho0) + s->P0;
     default:
-      return s->B * (power(rho / s->rho0, s->gamma) - 1.0) + s->P0;
+      return s->B * (pressure_power(rho / s->rho0, s->gamma) - 1.0) + s->P0;
   }
 }
 
@@ -55,7 +55,7 @@ double sd_sph_speed_of_sound(const sd_sph_state *s, double rho)
     case SD_SPH_RELATIV:
       return sqrt(s->B);
     default:
-      return sqrt(s->B * s->gamma / s->rho0 * power(rho / s->rho0, s->gamma) * s->rho0 / rho);
+      return sqrt(s->B * s->gamma / s->rho0 * pressure_power(rho / s->rho0, s->gamma) * s->rho0 / rho);
   }
 }
 

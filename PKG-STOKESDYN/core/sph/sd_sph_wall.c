@@ -69,8 +69,8 @@ static void each_meeting(const sd_sph_model *model, const sd_sph_list *list,
   }
 }
 
-static void compare(const sd_sph_model *model, const sd_sph_particles *p, const meeting *two,
-                    double *likeness)
+static void wall_compare(const sd_sph_model *model, const sd_sph_particles *p, const meeting *two,
+                         double *likeness)
 {
   const int wall = two->wall, fluid = two->fluid;
   if (~p->phase[wall] != p->phase[fluid]) return;
@@ -81,7 +81,7 @@ static void compare(const sd_sph_model *model, const sd_sph_particles *p, const 
 void sd_sph_likeness(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                      double *likeness)
 {
-  each_meeting(model, list, p, compare, likeness);
+  each_meeting(model, list, p, wall_compare, likeness);
 }
 
 static void add_motion(const sd_sph_model *model, const sd_sph_particles *p, const meeting *two,

@@ -45,7 +45,7 @@ int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, dou
   return count;
 }
 
-static inline void add(double *sum, double V, const double *v, double drag)
+static inline void grains_add(double *sum, double V, const double *v, double drag)
 {
   sum[SD_VANS_PHI] += V;
   sum[SD_VANS_VX] += V * v[0];
@@ -60,7 +60,7 @@ static void add_slices(double *sums, int first, int count, const double *V, cons
                        const double *drag)
 {
   double *sum = sums + (long) first * SD_VANS_ROWS;
-  for (int k = 0; k < count; k++) add(sum + k * SD_VANS_ROWS, V[k], v, drag[k]);
+  for (int k = 0; k < count; k++) grains_add(sum + k * SD_VANS_ROWS, V[k], v, drag[k]);
 }
 
 /* Drag on grain i along x (and z), were all of it in the slice: in each that it reaches, or, if it

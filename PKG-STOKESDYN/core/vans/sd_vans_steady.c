@@ -23,7 +23,7 @@ void sd_vans_series_add(sd_vans_series *series, const double sample[SD_VANS_SERI
   series->length *= 2.0;
 }
 
-static double mean_of(const double *x, int n)
+static double steady_mean_of(const double *x, int n)
 {
   double sum = 0.0;
   for (int i = 0; i < n; i++) sum += x[i];
@@ -35,10 +35,10 @@ static double mean_of(const double *x, int n)
 static double squares(const double *x, int n, int together, int *count)
 {
   const int m = n / together;
-  const double *from = x + n - m * together, mean = mean_of(from, m * together);
+  const double *from = x + n - m * together, mean = steady_mean_of(from, m * together);
   double sum = 0.0;
   for (int i = 0; i < m; i++) {
-    const double d = mean_of(from + i * together, together) - mean;
+    const double d = steady_mean_of(from + i * together, together) - mean;
     sum += d * d;
   }
   *count = m;
@@ -68,7 +68,7 @@ int sd_vans_series_mean(const sd_vans_series *series, int which, double *mean, d
   *mean = *error = 0.0;
   if (n == 0) return 0;
   const int cut = start_of_steady(x, n), left = n - cut;
-  *mean = mean_of(x + cut, left);
+  *mean = steady_mean_of(x + cut, left);
   if (n < 16 || 2 * cut > n) {
     double low = x[0], high = x[0];
     for (int i = 1; i < n; i++) {
@@ -78,7 +78,7 @@ int sd_vans_series_mean(const sd_vans_series *series, int which, double *mean, d
     *error = fmax(fabs(*mean), high - low);
     return 0;
   }
-  *error = 0.5 * fabs(mean_of(x + cut, left / 2) - mean_of(x + cut + left / 2, left - left / 2));
+  *error = 0.5 * fabs(steady_mean_of(x + cut, left / 2) - steady_mean_of(x + cut + left / 2, left - left / 2));
   for (int together = 1; together <= 4; together *= 2) {
     int count;
     const double sum = squares(x + cut, left, together, &count);

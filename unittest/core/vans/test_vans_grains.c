@@ -100,7 +100,7 @@ static void point_grains_stay_in_one_slice(void **state)
   for (int n = 0; n < N; n++) hindrance[n] = 1.0;
   const sd_vans_mesh mesh = {N, 0.0, 0.5, edge};
   const sd_vans_force_law law = {.rho = 1.2, .eta = 0.3, .exponent = 3.1};
-  const sd_vans_averaging how = {1, 0, NULL, NULL};
+  const sd_vans_averaging how = {1, 0, NULL, NULL, NULL};
   const double x[6] = {0, 0, 1.7, 0, 0, 9.0}, v[6] = {0.3, -0.2, 0.5, 1, 1, 1}, a[2] = {0.9, 0.9};
   assert_int_equal(
       sd_vans_average(&mesh, &law, &how, U, hindrance,
@@ -240,7 +240,7 @@ static void a_slice_gives_what_its_grain_gets(void **state)
     const double a = 0.0031, x[3] = {0, 0, 0.02 + a + 0.0005 * k}, v[3] = {0.3, 0, 0},
                  whole = 4.0 / 3.0 * SD_PI * a * a * a;
     const sd_vans_grains grain = {1, x, v, &a, NULL, NULL, NULL, NULL};
-    const sd_vans_averaging how = {0, 0, NULL, NULL};
+    const sd_vans_averaging how = {0, 0, NULL, NULL, NULL};
     int first;
     const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, x[2], a, &first, V, N);
     for (int moves = 0; moves < N; moves++) {

@@ -94,7 +94,7 @@ static void check_averages(const char *name, int classes, sd_vans_rules rules)
                                  .eta = vans_key(t, "viscoDyn", 0),
                                  .exponent = vans_key(t, "expoRZ", 0),
                                  .rules = rules};
-  const sd_vans_averaging how = {0, classes, radii, NULL};
+  const sd_vans_averaging how = {0, classes, radii, NULL, NULL};
   enum { n = 60 };
   double x[3 * n], v[3 * n], u[3 * n], hindrance[N_MAX], V[2 * N_MAX], profile[5 * N_MAX];
   vectors(t, "x", "y", "z", n, x);

@@ -52,3 +52,14 @@ def test_who_asks_the_boundary_stands_in_the_map():
     listed = re.search(r"\n\* \*\*Walls\.\*\*(.*?)\n\* ", (TOP / "PKG-STOKESDYN" / "README.md").read_text(), re.S).group(1)
     assert "scene" in asks
     assert not [name for name in sorted(asks) if f"`{name}`" not in listed]
+
+
+def test_a_name_of_a_function_stands_in_one_file():
+    """So that grep, a breakpoint and a profile mean one thing."""
+    found = {}
+    for path in (TOP / "PKG-STOKESDYN").rglob("*"):
+        if path.suffix in (".c", ".h", ".cpp"):
+            for name in re.findall(r"^static [\w\s*:<>,]*?[\s*](\w+)\(", path.read_text(), re.M):
+                found.setdefault(name, set()).add(path.name)
+    assert len(found) > 900
+    assert {name: files for name, files in found.items() if len(files) > 1} == {}

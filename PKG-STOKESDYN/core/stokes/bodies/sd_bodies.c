@@ -88,7 +88,7 @@ static sd_status pre(loop *c, const double *r, const double *f, int moved, doubl
   return SD_OK;
 }
 
-static sd_status precondition(void *ctx, const double *r, double *z)
+static sd_status bodies_precondition(void *ctx, const double *r, double *z)
 {
   loop *c = ctx;
   memset(motion_of(c, z), 0, sizeof(double) * (size_t) motions(c));
@@ -98,7 +98,7 @@ static sd_status precondition(void *ctx, const double *r, double *z)
 /* --- the matrix --- */
 
 /* w = M' l - K V of p = (l, V) */
-static sd_status apply(void *ctx, const double *p, double *w)
+static sd_status bodies_apply(void *ctx, const double *p, double *w)
 {
   loop *c = ctx;
   const double *V = p + sd_bodies_rows(c->A);
@@ -109,7 +109,7 @@ static sd_status apply(void *ctx, const double *p, double *w)
 }
 
 /* p.D^-1 p of the forces */
-static double square(void *ctx, const double *p)
+static double bodies_square(void *ctx, const double *p)
 {
   const sd_bodies *A = ((loop *) ctx)->A;
   double sum = 0.0;
@@ -162,7 +162,7 @@ enum { NOISE, FORCES, LOADS };
 
 /* r.D r, r.z's rounding: z is what pre leaves of r, whose rigid part it cancels; l.(K V - u);
  * F.(V + dV) */
-static void measure(void *ctx, const sd_cg_vectors *v, double own[SD_CG_OWN])
+static void bodies_measure(void *ctx, const sd_cg_vectors *v, double own[SD_CG_OWN])
 {
   const loop *c = ctx;
   const sd_bodies *A = c->A;
@@ -188,7 +188,7 @@ static verdict judge_guess(loop *c, double rz)
 
 /* r.z is the power of what is still wrong, by the blocks of the bodies: below the floor it is
  * rounding of velocities that are the stream's own. */
-static sd_status judge(void *ctx, const sd_cg_state *now, int *done)
+static sd_status bodies_judge(void *ctx, const sd_cg_state *now, int *done)
 {
   loop *c = ctx;
   powers *power = &c->power;
@@ -262,7 +262,7 @@ static sd_status expect(loop *c)
 /* r = K V - u - M' l of x, which obeys the second line */
 static sd_status find_residual(loop *c)
 {
-  const sd_status status = apply(c, c->v.x, c->v.w);
+  const sd_status status = bodies_apply(c, c->v.x, c->v.w);
   if (status != SD_OK) return status;
   for (long j = 0; j < sd_bodies_rows(c->A); j++) c->v.r[j] = -c->problem->u[j] - c->v.w[j];
   return expect(c);
@@ -353,16 +353,16 @@ static sd_status settle(loop *c)
   return SD_OK;
 }
 
-static sd_status iterate(loop *c)
+static sd_status bodies_iterate(loop *c)
 {
   const sd_cg cg = {.size = sd_bodies_rows(c->A) + motions(c),
                     .paired = sd_bodies_rows(c->A),
                     .ctx = c,
-                    .apply = apply,
-                    .precondition = precondition,
-                    .measure = measure,
-                    .judge = judge,
-                    .square = square,
+                    .apply = bodies_apply,
+                    .precondition = bodies_precondition,
+                    .measure = bodies_measure,
+                    .judge = bodies_judge,
+                    .square = bodies_square,
                     .world = &c->A->world};
   sd_cg_state state;
   sd_status status = SD_OK;
@@ -448,7 +448,7 @@ sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
   if (status != SD_OK) return status;
   take_loads(&c);
   status = problem->warm ? start_warm(&c, motion->before) : start_cold(&c);
-  if (status == SD_OK) status = iterate(&c);
+  if (status == SD_OK) status = bodies_iterate(&c);
   if (status != SD_OK && status != SD_EMAXITER) return status;
   const sd_status last = finish(&c, motion);
   return last == SD_OK ? status : last;

@@ -28,14 +28,14 @@ void sd_bodies_noise_free(sd_bodies_noise *s)
   memset(s, 0, sizeof(*s));
 }
 
-static sd_status apply(void *ctx, const double *l, double *w)
+static sd_status bodies_noise_apply(void *ctx, const double *l, double *w)
 {
   const draw *d = ctx;
   const double *still = d->bodies + 12 * (long) sd_bodies_count(d->A);
   return sd_bodies_product(d->A, d->shells, l, still, d->bodies, d->on_spheres, d->rows, w);
 }
 
-static const sd_body_root *root_of(const sd_bodies_blocks *blocks, int b)
+static const sd_body_root *noise_root_of(const sd_bodies_blocks *blocks, int b)
 {
   const sd_body_root *root = blocks->body[b].shape ? blocks->root[b] : NULL;
   return root && root->n > 0 ? root : NULL;
@@ -55,7 +55,7 @@ static void turn(const double R[9], int back, int width, const double *x, double
 }
 
 /* scale R B R^T of one body, B [n n] symmetric, in place */
-static void take_block(const sd_body *b, double scale, const double *B, double *own, double *rows)
+static void noise_take_block(const sd_body *b, double scale, const double *B, double *own, double *rows)
 {
   const int w = b->shape->width, n = w * b->shape->m;
   double *x = own, *y = own + n;
@@ -69,19 +69,19 @@ static void take_block(const sd_body *b, double scale, const double *B, double *
 }
 
 /* P = S C^-1 sqrt(eta a), S: torques times the length, so P^T = C^-1 S and P^-T = S^-1 C */
-static void multiply(const draw *d, half_of which, const double *v, double *out)
+static void noise_multiply(const draw *d, half_of which, const double *v, double *out)
 {
   if (out != v) memcpy(out, v, sizeof(double) * (size_t) sd_bodies_rows(d->A));
   for (int b = 0; b < d->A->shaped; b++) {
     const sd_body *body = d->blocks->body + b;
-    const sd_body_root *root = root_of(d->blocks, b);
+    const sd_body_root *root = noise_root_of(d->blocks, b);
     if (!root) continue;
     const double scale = sqrt(body->eta * body->a);
     if (which == HALF_BACK) stretch(body, root->length, out);
     if (which == HALF_INVERSE)
-      take_block(body, 1.0 / scale, root->root, d->own, out);
+      noise_take_block(body, 1.0 / scale, root->root, d->own, out);
     else
-      take_block(body, scale, root->inverse, d->own, out);
+      noise_take_block(body, scale, root->inverse, d->own, out);
     if (which == HALF) stretch(body, root->length, out);
     if (which == HALF_INVERSE) stretch(body, 1.0 / root->length, out);
   }
@@ -93,19 +93,19 @@ static void multiply(const draw *d, half_of which, const double *v, double *out)
 
 static sd_status half(void *ctx, const double *v, double *out)
 {
-  multiply(ctx, HALF, v, out);
+  noise_multiply(ctx, HALF, v, out);
   return SD_OK;
 }
 
 static sd_status half_back(void *ctx, const double *v, double *out)
 {
-  multiply(ctx, HALF_BACK, v, out);
+  noise_multiply(ctx, HALF_BACK, v, out);
   return SD_OK;
 }
 
 static sd_status half_inverse(void *ctx, const double *v, double *out)
 {
-  multiply(ctx, HALF_INVERSE, v, out);
+  noise_multiply(ctx, HALF_INVERSE, v, out);
   return SD_OK;
 }
 
@@ -121,7 +121,7 @@ static void fill_diagonal(const draw *d)
     const sd_body *body = A->body + b;
     for (int k = 0; k < body->shape->m; k++)
       for (long j = (long) w * body->row[k]; j < (long) w * (body->row[k] + 1); j++)
-        d->diagonal[j] = root_of(d->blocks, b) ? 1.0 : sqrt(A->D[j]);
+        d->diagonal[j] = noise_root_of(d->blocks, b) ? 1.0 : sqrt(A->D[j]);
   }
 }
 
@@ -130,7 +130,7 @@ static long largest_block(const sd_bodies *A, const sd_bodies_blocks *blocks)
 {
   long n = 0;
   for (int b = 0; b < A->shaped; b++)
-    if (root_of(blocks, b) && blocks->root[b]->n > n) n = blocks->root[b]->n;
+    if (noise_root_of(blocks, b) && blocks->root[b]->n > n) n = blocks->root[b]->n;
   return 2 * n;
 }
 
@@ -147,7 +147,7 @@ sd_status sd_bodies_draw(sd_bodies_noise *s, const sd_bodies *A, const sd_bodies
   memset(bodies + 2 * motions, 0, sizeof(double) * (size_t) motions);
   fill_diagonal(&d);
   const sd_noise_matrix M = {.n = rows,
-                             .apply = apply,
+                             .apply = bodies_noise_apply,
                              .ctx = &d,
                              .D = diagonal,
                              .half = half,

@@ -99,8 +99,8 @@ static void move_in_part(const sd_body_shape *s, int at, const double load[6], d
 /* pre(r, f) of body b. In the axes and lengths of the shape all matrices are constant: with s = eta a,
  * s B for M_b'^-1 and s G for M_b'^-1 K, V = N (f - s G^T y) / s, z = s (B y + G V), y = r. G^T y is
  * K^T B y without a second product, since B is symmetric. */
-static void respond(const sd_body *b, sd_body_known known, const double *r, const double *f, double *scratch,
-                    double *l, double V[6])
+static void body_respond(const sd_body *b, sd_body_known known, const double *r, const double *f, double *scratch,
+                         double *l, double V[6])
 {
   const sd_body_shape *shape = b->shape;
   const double s = b->eta * b->a;
@@ -147,7 +147,7 @@ void sd_bodies_alone(const sd_bodies *A, const double *r, const double *f, doubl
     }
   for (int b = 0; b < A->shaped; b++) {
     const long of = 6 * (long) (A->lone + b);
-    respond(A->body + b, sd_bodies_known(A, A->lone + b), r, f ? f + of : NULL, scratch, l, V + of);
+    body_respond(A->body + b, sd_bodies_known(A, A->lone + b), r, f ? f + of : NULL, scratch, l, V + of);
   }
 }
 

@@ -14,7 +14,7 @@ void sd_body_follow_free(sd_body_follow *f)
 }
 
 /* Row i of K: number i % width of point i / width from (U, W) */
-static void rigid_row(const sd_body_shape *s, int i, double row[6])
+static void follow_rigid_row(const sd_body_shape *s, int i, double row[6])
 {
   const int d = i % s->width;
   memset(row, 0, 6 * sizeof(double));
@@ -24,7 +24,7 @@ static void rigid_row(const sd_body_shape *s, int i, double row[6])
   sd_cross(s->x + 3 * (long) (i / s->width), e, row + 3);
 }
 
-static sd_status make_room(const sd_body_shape *s, sd_body_follow *out)
+static sd_status follow_make_room(const sd_body_shape *s, sd_body_follow *out)
 {
   *out = (sd_body_follow){.n = s->width * s->m};
   out->A = calloc(6 * (size_t) out->n, sizeof(double));
@@ -34,15 +34,15 @@ static sd_status make_room(const sd_body_shape *s, sd_body_follow *out)
 sd_status sd_body_follow_mean(const sd_body_shape *s, sd_body_follow *out)
 {
   double square[36] = {0.0}, inverse[36], K[6];
-  const sd_status status = make_room(s, out);
+  const sd_status status = follow_make_room(s, out);
   if (status != SD_OK) return status;
   for (int i = 0; i < out->n; i++) {
-    rigid_row(s, i, K);
+    follow_rigid_row(s, i, K);
     for (int e = 0; e < 36; e++) square[e] += K[e / 6] * K[e % 6];
   }
   sd_pseudo_inverse6(square, inverse);
   for (int i = 0; i < out->n; i++) {
-    rigid_row(s, i, K);
+    follow_rigid_row(s, i, K);
     for (int c = 0; c < 6; c++)
       for (int p = 0; p < 6; p++) out->A[6 * (long) i + c] += K[p] * inverse[6 * p + c];
   }
@@ -92,16 +92,16 @@ static double weight_of(const sd_body_shape *s, int c)
 }
 
 /* z H^-1 z'^T of two terms, H^-1 = weight_of(c) M_b'^-1 in column c */
-static double meet(const sd_body_shape *s, const term *a, const term *b)
+static double follow_meet(const sd_body_shape *s, const term *a, const term *b)
 {
   const long n = (long) s->width * s->m;
   double K[6], other[6], sum = 0.0;
   if (a->of_body && b->of_body)
     return a->h == b->h ? weight_of(s, a->h) * s->resistance[6 * a->g + b->g] : 0.0;
-  if (b->of_body) return meet(s, b, a);
-  rigid_row(s, b->first + b->g, K);
+  if (b->of_body) return follow_meet(s, b, a);
+  follow_rigid_row(s, b->first + b->g, K);
   if (a->of_body) return weight_of(s, a->h) * K[a->h] * s->rigid[6 * (long) b->i + a->g];
-  rigid_row(s, a->first + a->g, other);
+  follow_rigid_row(s, a->first + a->g, other);
   for (int c = 0; c < 6; c++) sum += weight_of(s, c) * K[c] * other[c];
   return sum * s->inverse[n * a->i + b->i];
 }
@@ -112,12 +112,12 @@ static double meet_all(const sd_body_shape *s, int k, int l)
   const int of_k = condition(s, k, a), of_l = condition(s, l, b);
   double sum = 0.0;
   for (int p = 0; p < of_k; p++)
-    for (int q = 0; q < of_l; q++) sum += a[p].coefficient * b[q].coefficient * meet(s, a + p, b + q);
+    for (int q = 0; q < of_l; q++) sum += a[p].coefficient * b[q].coefficient * follow_meet(s, a + p, b + q);
   return sum;
 }
 
 /* y = G x */
-static void multiply(int n, const double *G, const double *x, double *y)
+static void follow_multiply(int n, const double *G, const double *x, double *y)
 {
   for (int p = 0; p < n; p++) {
     y[p] = 0.0;
@@ -137,7 +137,7 @@ static sd_status solve_conditions(int n, const double *G, const double *b, doubl
   const sd_status status = sd_cholesky(n, factor);
   memset(x, 0, sizeof(double) * (size_t) n);
   for (int pass = 0; pass < 6 && status == SD_OK; pass++) {
-    multiply(n, G, x, Gx);
+    follow_multiply(n, G, x, Gx);
     *wrong = 0.0;
     for (int p = 0; p < n; p++) {
       left[p] = b[p] - Gx[p];
@@ -150,7 +150,7 @@ static sd_status solve_conditions(int n, const double *G, const double *b, doubl
 }
 
 /* A_c = weight_of(c) M_b'^-1 (sum of multipliers times conditions); work [6 n] */
-static void combine(const sd_body_shape *s, const double *multiplier, double *work, double *A)
+static void follow_combine(const sd_body_shape *s, const double *multiplier, double *work, double *A)
 {
   const int n = s->width * s->m;
   memset(work, 0, sizeof(double) * 6 * (size_t) n);
@@ -161,11 +161,11 @@ static void combine(const sd_body_shape *s, const double *multiplier, double *wo
     for (int p = 0; p < terms; p++) {
       const double by = multiplier[k] * t[p].coefficient;
       for (int i = 0; i < n && t[p].of_body; i++) {
-        rigid_row(s, i, K);
+        follow_rigid_row(s, i, K);
         work[6 * (long) i + t[p].h] += by * K[t[p].g];
       }
       if (t[p].of_body) continue;
-      rigid_row(s, t[p].first + t[p].g, K);
+      follow_rigid_row(s, t[p].first + t[p].g, K);
       for (int c = 0; c < 6; c++) work[6 * (long) t[p].i + c] += by * K[c];
     }
   }
@@ -194,7 +194,7 @@ static sd_status design(const sd_body_shape *s, double *A, double *wrong)
       G[(long) n * k + l] = G[(long) n * l + k] = scale[k] * scale[l] * meet_all(s, k, l);
   const sd_status status = solve_conditions(n, G, b, x, work, wrong);
   for (int k = 0; k < n; k++) x[k] *= scale[k];
-  if (status == SD_OK) combine(s, x, scale + n, A);
+  if (status == SD_OK) follow_combine(s, x, scale + n, A);
   free(G);
   return status;
 }
@@ -253,7 +253,7 @@ static const double MET = 1e-7;
 sd_status sd_body_follow_create(const sd_body_shape *s, int stands, sd_body_follow *out)
 {
   double wrong = INFINITY;
-  sd_status status = make_room(s, out);
+  sd_status status = follow_make_room(s, out);
   if (status == SD_OK && stands && s->inverse && out->n <= SD_BODY_FOLLOW_MOST) {
     status = design(s, out->A, &wrong);
     if (status == SD_ESINGULAR) status = SD_OK;

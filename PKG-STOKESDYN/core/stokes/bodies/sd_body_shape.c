@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Row (k, p) of K: e_p.(U + W x X) = e_p.U + (X x e_p).W for p < 3, and W_p for the spins. */
-static void rigid_row(const double X[3], int p, double row[6])
+static void shape_rigid_row(const double X[3], int p, double row[6])
 {
   memset(row, 0, 6 * sizeof(double));
   row[p] = 1.0;
@@ -34,7 +34,7 @@ static void apply_dense(const sd_body_shape *s, const double *inverse, double *r
   memset(rigid, 0, sizeof(double) * 6 * N);
   for (size_t j = 0; j < N; j++) {
     double K[6];
-    rigid_row(s->x + 3 * (j / w), (int) (j % w), K);
+    shape_rigid_row(s->x + 3 * (j / w), (int) (j % w), K);
     for (size_t i = 0; i < N; i++)
       for (int c = 0; c < 6; c++) rigid[6 * i + c] += inverse[i * N + j] * K[c];
   }
@@ -47,7 +47,7 @@ static void collect_rigid(const sd_body_shape *s, const double *rigid, double R[
   memset(R, 0, 36 * sizeof(double));
   for (size_t i = 0; i < N; i++) {
     double K[6];
-    rigid_row(s->x + 3 * (i / w), (int) (i % w), K);
+    shape_rigid_row(s->x + 3 * (i / w), (int) (i % w), K);
     for (int p = 0; p < 6; p++)
       for (int c = 0; c < 6; c++) R[6 * p + c] += K[p] * rigid[6 * i + c];
   }
@@ -84,19 +84,19 @@ static void add_shells(sd_body_shape *s, const sd_clump *shells, const double *r
   motion_in_strain(N_spheres, C, s->carried, -1.0);
   for (size_t i = 0; i < N; i++) {
     double Ki[6], t[6] = {0.0};
-    rigid_row(s->x + 3 * (i / 6), (int) (i % 6), Ki);
+    shape_rigid_row(s->x + 3 * (i / 6), (int) (i % 6), Ki);
     for (int p = 0; p < 6; p++)
       for (int c = 0; c < 6; c++) t[c] += Ki[p] * s->shell[6 * p + c];
     for (size_t j = 0; j < N; j++) {
       double Kj[6];
-      rigid_row(s->x + 3 * (j / 6), (int) (j % 6), Kj);
+      shape_rigid_row(s->x + 3 * (j / 6), (int) (j % 6), Kj);
       for (int c = 0; c < 6; c++) M[i * N + j] += t[c] * Kj[c];
     }
   }
 }
 
 /* A^-1 in the place of A, symmetric and positive definite */
-static sd_status invert(size_t N, double *A)
+static sd_status shape_invert(size_t N, double *A)
 {
   const sd_status status = sd_cholesky((int) N, A);
   return status == SD_OK ? sd_cholesky_inverse((int) N, A) : status;
@@ -105,7 +105,7 @@ static sd_status invert(size_t N, double *A)
 /* inverse, rigid, mobility and resistance from M, which `inverse` holds on entry */
 static sd_status complete(sd_body_shape *s)
 {
-  const sd_status status = invert((size_t) s->width * (size_t) s->m, s->inverse);
+  const sd_status status = shape_invert((size_t) s->width * (size_t) s->m, s->inverse);
   if (status != SD_OK) return status;
   apply_dense(s, s->inverse, s->rigid);
   collect_rigid(s, s->rigid, s->resistance);
@@ -141,7 +141,7 @@ static void complete_mirrored(sd_body_shape *s, double *work)
   for (int c = 0; c < 6; c++) {
     for (size_t j = 0; j < N; j++) {
       double K[6];
-      rigid_row(s->x + 3 * (j / 3), (int) (j % 3), K);
+      shape_rigid_row(s->x + 3 * (j / 3), (int) (j % 3), K);
       work[j] = K[c];
     }
     sd_mirrored_apply(s->mirrored, work, answer);

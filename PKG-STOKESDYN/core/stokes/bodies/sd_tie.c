@@ -60,7 +60,7 @@ typedef struct {
 } films;
 
 /* w = H p */
-static sd_status apply(void *ctx, const double *p, double *w)
+static sd_status tie_apply(void *ctx, const double *p, double *w)
 {
   const films *s = ctx;
   const sd_status status = resist(s->A, p, w);
@@ -70,13 +70,13 @@ static sd_status apply(void *ctx, const double *p, double *w)
   return SD_OK;
 }
 
-static sd_status precondition(void *ctx, const double *r, double *z)
+static sd_status tie_precondition(void *ctx, const double *r, double *z)
 {
   return sd_tie_precondition(((films *) ctx)->A, r, z);
 }
 
 /* What V lacks after too many products is left to the loop. */
-static sd_status judge(void *ctx, const sd_cg_state *now, int *done)
+static sd_status tie_judge(void *ctx, const sd_cg_state *now, int *done)
 {
   films *s = ctx;
   if (now->steps == 0) s->enough = s->tolerance * s->tolerance * now->rz;
@@ -113,9 +113,9 @@ sd_status sd_tie_solve(const sd_bodies *A, const double *g, const double *r, dou
   const sd_cg cg = {.size = size,
                     .paired = size,
                     .ctx = &s,
-                    .apply = apply,
-                    .precondition = precondition,
-                    .judge = judge,
+                    .apply = tie_apply,
+                    .precondition = tie_precondition,
+                    .judge = tie_judge,
                     .world = &A->world};
   sd_cg_state state;
   sd_status status = bear_before(A, r, moved, V, borne, share);

@@ -32,7 +32,7 @@ static int takes_part(const sd_lubrication *L, const double *mine, int i)
   return (i < L->n ? mine[i] : L->others[i - L->n]) != 0.0;
 }
 
-static int reserve(const sd_bodies *A)
+static int approach_reserve(const sd_bodies *A)
 {
   sd_tie *t = A->tie;
   const sd_lubrication *L = t->L;
@@ -48,7 +48,7 @@ sd_status sd_tie_approach_make(const sd_bodies *A)
 {
   sd_tie *t = A->tie;
   const sd_lubrication *L = t->L;
-  sd_status status = sd_world_agree(&L->world, reserve(A) ? SD_OK : SD_ENOMEMORY);
+  sd_status status = sd_world_agree(&L->world, approach_reserve(A) ? SD_OK : SD_ENOMEMORY);
   if (status != SD_OK) return status;
   memcpy(t->stiff, L->diagonal, sizeof(double) * 36 * (size_t) L->n);
   memset(t->spring, 0, sizeof(*t->spring) * (size_t) (L->count + L->beyond));

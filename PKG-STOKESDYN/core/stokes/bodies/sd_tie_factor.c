@@ -89,7 +89,7 @@ static int is_zero(const double B[36])
 }
 
 /* H_0 of body b */
-static void own_block(const sd_bodies *A, int b, double H[36])
+static void factor_own_block(const sd_bodies *A, int b, double H[36])
 {
   const double *D = b < A->lone ? A->D + 6 * (long) A->loner[b] : NULL;
   for (int q = 0; q < 6; q++) {
@@ -118,7 +118,7 @@ static void find_diagonal(const sd_bodies *A, assembly *a)
   for (int b = 0; b < sd_bodies_count(A); b++) {
     double *block = a->diagonal + 36 * (long) b, *scale = t->scale + 6 * (long) b, H[36];
     const int out = is_zero(block);
-    own_block(A, b, H);
+    factor_own_block(A, b, H);
     for (int d = 0; d < 6; d++)
       scale[d] = out || sd_bodies_given(A, b, d) ? 0.0 : 1.0 / sqrt(H[7 * d]);
     for (int e = 0; e < 36; e++) H[e] += block[e];
@@ -253,7 +253,7 @@ static sd_status add_block(const sd_bodies *A, assembly *a, long k)
   return sum < weak * weak ? SD_OK : sd_block_cholesky_add(&t->factor, p, q, scaled);
 }
 
-static sd_status reserve(const sd_bodies *A, assembly *a)
+static sd_status factor_reserve(const sd_bodies *A, assembly *a)
 {
   sd_tie *t = A->tie;
   const size_t bodies = (size_t) sd_bodies_count(A), number = sizeof(double);
@@ -313,7 +313,7 @@ sd_status sd_tie_factor(const sd_bodies *A)
 {
   const sd_world *world = &A->tie->L->world;
   assembly a = {0};
-  sd_status status = sd_world_agree(world, reserve(A, &a));
+  sd_status status = sd_world_agree(world, factor_reserve(A, &a));
   if (status == SD_OK) find_diagonal(A, &a);
   if (status == SD_OK && layered(A)) status = tell_places(A, &a);
   if (status == SD_OK) status = sd_world_agree(world, assemble(A, &a));
@@ -329,7 +329,7 @@ sd_status sd_tie_factor(const sd_bodies *A)
 /* --- P^-1 --- */
 
 /* Of the other ranks' bodies, what the factor is applied to */
-static sd_status fetch(const sd_bodies *A)
+static sd_status factor_fetch(const sd_bodies *A)
 {
   const sd_tie *t = A->tie;
   const sd_world *world = &t->L->world;
@@ -343,7 +343,7 @@ static sd_status fetch(const sd_bodies *A)
 }
 
 /* And back what it gives them, to be added to theirs */
-static sd_status give_back(const sd_bodies *A)
+static sd_status factor_give_back(const sd_bodies *A)
 {
   const sd_tie *t = A->tie;
   const sd_lubrication *L = t->L;
@@ -364,9 +364,9 @@ sd_status sd_tie_precondition(const sd_bodies *A, const double *r, double *z)
   const long size = 6 * (long) sd_bodies_count(A);
   sd_status status = SD_OK;
   for (long j = 0; j < size; j++) t->all[j] = t->scale[j] * r[j];
-  if (layered(A)) status = fetch(A);
+  if (layered(A)) status = factor_fetch(A);
   if (status == SD_OK) sd_block_cholesky_apply(&t->factor, t->all);
-  if (status == SD_OK && layered(A)) status = give_back(A);
+  if (status == SD_OK && layered(A)) status = factor_give_back(A);
   for (long j = 0; j < size; j++) z[j] = t->scale[j] * t->all[j];
   return status;
 }

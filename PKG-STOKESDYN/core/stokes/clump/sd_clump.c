@@ -12,7 +12,7 @@ enum { RIGID = 6 };
 /* --- the table -------------------------------------------------------------------------------- */
 
 /* Response of one sphere to a slip given in columns: forces are linear in it */
-static void respond(const double *table, const double in[SD_CLUMP_COLUMNS], double out[6])
+static void clump_respond(const double *table, const double in[SD_CLUMP_COLUMNS], double out[6])
 {
   for (int p = 0; p < 6; p++) out[p] = 0.0;
   for (int c = 0; c < SD_CLUMP_COLUMNS; c++)
@@ -76,7 +76,7 @@ static sd_status symmetrize(const sd_shape *s, double *table)
       sd_clump_split_gradient(back_g, E, W, turned + 6);
       for (int k = 0; k < s->n; k++) {
         double out[6], back[6];
-        respond(old + 6 * SD_CLUMP_COLUMNS * (size_t) s->perm[(size_t) s->n * m + k], turned, out);
+        clump_respond(old + 6 * SD_CLUMP_COLUMNS * (size_t) s->perm[(size_t) s->n * m + k], turned, out);
         sd_multiply3t(g, out, back);
         sd_multiply3t(g, out + 3, back + 3);
         double *t = table + 6 * (SD_CLUMP_COLUMNS * (size_t) k + c);
@@ -92,8 +92,8 @@ static sd_status symmetrize(const sd_shape *s, double *table)
 }
 
 /* Forces of the points -> force and torque of every sphere about its own centre */
-static void gather(const sd_shape *shape, const sd_surface *s, int m, const double *B,
-                   double *table)
+static void clump_gather(const sd_shape *shape, const sd_surface *s, int m, const double *B,
+                         double *table)
 {
   const size_t N = (size_t) m * s->n;
   memset(table, 0, sizeof(double) * 6 * SD_CLUMP_COLUMNS * (size_t) shape->n);
@@ -123,7 +123,7 @@ static void lone_sphere(double a, double *table)
 /* --- what follows from the table -------------------------------------------------------------- */
 
 /* Sums over the clump about its centroid: 6 rows, 12 columns */
-static void add_up(const sd_shape *s, const double *table, double sum[6][SD_CLUMP_COLUMNS])
+static void clump_add_up(const sd_shape *s, const double *table, double sum[6][SD_CLUMP_COLUMNS])
 {
   memset(sum, 0, sizeof(double) * 6 * SD_CLUMP_COLUMNS);
   for (int k = 0; k < s->n; k++)
@@ -185,7 +185,7 @@ static void symmetric_coupling(const double tt[9], const double cc[9], double si
 static void derive(const sd_shape *s, sd_clump *clump)
 {
   double sum[6][SD_CLUMP_COLUMNS], tt[9], cc[9];
-  add_up(s, clump->table, sum);
+  clump_add_up(s, clump->table, sum);
   for (int p = 0; p < 6; p++)
     for (int q = 0; q < 6; q++) {
       clump->R[6 * p + q] = 0.5 * (sum[p][q] + sum[q][p]);
@@ -238,7 +238,7 @@ static sd_status solve_surface(const sd_shape *shape, const sd_surface *s,
   double *B = malloc(sizeof(double) * SD_CLUMP_COLUMNS * m * (size_t) s->n);
   if (!B) return SD_ENOMEMORY;
   const sd_status status = sd_clump_solve(s, o, need, k, times, B, &clump->iterations);
-  if (status == SD_OK) gather(shape, s, m, B, table);
+  if (status == SD_OK) clump_gather(shape, s, m, B, table);
   free(B);
   return status;
 }

@@ -7,8 +7,8 @@
 /* sum_m e_m (e_m.b) / d_m over the main axes e of the shape, turned by R: the solution of a
  * symmetric system that is diagonal there. An axis with d = 0 is left out, as a pseudo-inverse
  * does. */
-static void divide(const sd_shape *s, const double R[9], const double d[3], const double b[3],
-                   double out[3])
+static void motion_divide(const sd_shape *s, const double R[9], const double d[3], const double b[3],
+                          double out[3])
 {
   double body[3], x[3] = {0.0, 0.0, 0.0};
   sd_multiply3t(R, b, body);
@@ -40,7 +40,7 @@ void sd_clump_velocity(const sd_shape *s, const sd_clump_motion *m, const double
     }
   }
   for (int d = 0; d < 3; d++) U[d] = share * sum[d];
-  divide(s, R, across, L, W);
+  motion_divide(s, R, across, L, W);
   if (!m->omega || s->rank == 2) return;
 
   /* On a line with direction e the spheres' own spins tell what is along it, in a point all. */
@@ -77,7 +77,7 @@ void sd_clump_flow(const sd_shape *s, const sd_clump_motion *m, const double R[9
   }
   for (int p = 0; p < 3; p++) {
     double D[3];
-    divide(s, R, s->squares, B + 3 * p, D);
+    motion_divide(s, R, s->squares, B + 3 * p, D);
     for (int q = 0; q < 3; q++) G[3 * p + q] += D[q];
   }
 }

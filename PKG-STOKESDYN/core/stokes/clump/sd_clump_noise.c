@@ -23,7 +23,7 @@ static void shift_mobility(const double N[36], const double d[3], double out[36]
 
 /* With S = diag(1, 1, 1, l, l, l), l^2 = tr TT / tr RR, the matrix S N S has one unit, and L = S^-1 (S N
  * S)^1/2. Eigenvalues below 0 are rounding. */
-static void take_root(const double N[36], double L[36])
+static void noise_take_root(const double N[36], double L[36])
 {
   const double tt = N[0] + N[7] + N[14], rr = N[21] + N[28] + N[35];
   const double length = rr > 0.0 ? sqrt(tt / rr) : 1.0;
@@ -45,7 +45,7 @@ void sd_clump_noise_of(const sd_clump *clump, sd_clump_noise *out)
   double N[36];
   shift_mobility(clump->mobility, o, N);
   for (int d = 0; d < 3; d++) out->centre[d] = clump->centre[d] + o[d];
-  take_root(N, out->root);
+  noise_take_root(N, out->root);
 }
 
 void sd_clump_noise_draw(const sd_clump_noise *n, const double R[9], double eta, const double w[6],

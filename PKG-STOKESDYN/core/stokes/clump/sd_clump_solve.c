@@ -91,7 +91,7 @@ typedef struct {
   int solve, solves, products;
 } operator;
 
-static sd_status apply(void *ctx, const double *F, double *u)
+static sd_status clump_solve_apply(void *ctx, const double *F, double *u)
 {
   operator* op = ctx;
   if (op->o->progress) op->o->progress(op->o->progress_ctx, op->solve, op->solves, op->products++);
@@ -117,7 +117,7 @@ static sd_status solve_iterative(const sd_surface *s, const sd_clump_options *o,
   const sd_spheres spheres = {s->x, s->a, ones};
   operator op = {.o = o, .solves = SD_CLUMP_COLUMNS * times};
   sd_system A = {
-      .n = n, .drag = drag, .spin = m == 6 ? spin : NULL, .apply = apply, .apply_ctx = &op};
+      .n = n, .drag = drag, .spin = m == 6 ? spin : NULL, .apply = clump_solve_apply, .apply_ctx = &op};
   sd_sparse factor;
   if (sd_sparse_create(&factor, &law, &spheres, n, m, REACH, 0, 1) == SD_OK) {
     A.precondition = sd_sparse_apply;

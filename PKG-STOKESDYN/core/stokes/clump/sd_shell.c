@@ -83,7 +83,7 @@ typedef struct {
   double (*p)[3]; /* [planar + general] representatives */
 } orbits;
 
-static int spread(const orbits *o, double *out)
+static int shell_spread(const orbits *o, double *out)
 {
   const double six[3] = {1.0, 0.0, 0.0}, third = sqrt(1.0 / 3.0), eight[3] = {third, third, third};
   int n = 0;
@@ -123,7 +123,7 @@ static double coulomb(const orbits *o, const double *all, int n, double (*force)
 static double relax(orbits *o, double *all, double (*force)[3], double (*last)[3])
 {
   const int m = o->planar + o->general;
-  int n = spread(o, all);
+  int n = shell_spread(o, all);
   double energy = coulomb(o, all, n, force), step = 0.1 / n;
   for (int k = 0; k < 400 && step > 1e-13; k++) {
     double largest = 0.0;
@@ -141,14 +141,14 @@ static double relax(orbits *o, double *all, double (*force)[3], double (*last)[3
       for (int d = i < o->planar ? 1 : 0; d < 3; d++) o->p[i][d] = fmax(o->p[i][d], 1e-6);
       sd_normalize(o->p[i]);
     }
-    n = spread(o, all);
+    n = shell_spread(o, all);
     const double now = coulomb(o, all, n, force);
     if (now < energy) {
       energy = now;
       step *= 1.2;
     } else {
       memcpy(o->p, last, sizeof(double) * 3 * (size_t) m);
-      n = spread(o, all);
+      n = shell_spread(o, all);
       coulomb(o, all, n, force);
       step *= 0.4;
     }

@@ -176,7 +176,7 @@ static sd_field_part part_of(const sd_field *f, int n, const sd_field_grid *g, d
   return p;
 }
 
-static void range_of(const sd_field *f, sd_field_part *p)
+static void field_range_of(const sd_field *f, sd_field_part *p)
 {
   const double scale = f->how.scale;
   static const int power[SD_RADIALS] = {1, 3, 3, 5, 5, 7, 3, 5};
@@ -190,7 +190,7 @@ static void range_of(const sd_field *f, sd_field_part *p)
 }
 
 /* Of this splitting, unless they are there */
-static sd_status make_tables(sd_field *f, const sd_world *world)
+static sd_status field_make_tables(sd_field *f, const sd_world *world)
 {
   const struct sd_ewald_kernels *kernels = SD_KERNELS_OF(sd_ewald, plain, sd_isa_of(SD_ISA_BEST));
   const sd_ewald *e = &f->how.ewald;
@@ -222,7 +222,7 @@ static sd_status make_tables(sd_field *f, const sd_world *world)
 }
 
 /* Velocities on the waves' grid */
-static sd_status convolve(sd_field *f, const sd_field_sources *s, const sd_world *world)
+static sd_status field_convolve(sd_field *f, const sd_field_sources *s, const sd_world *world)
 {
   const int m = f->width;
   const size_t n = (size_t) s->n;
@@ -252,8 +252,8 @@ static sd_status convolve(sd_field *f, const sd_field_sources *s, const sd_world
 }
 
 /* What is beyond the range is felt as a mean, of the sources of all ranks; a point has b = 0. */
-static sd_status mean_of(const sd_field *f, const sd_field_sources *s, const sd_world *world,
-                         double *mean)
+static sd_status field_mean_of(const sd_field *f, const sd_field_sources *s, const sd_world *world,
+                               double *mean)
 {
   for (int d = 0; d < 3; d++) mean[d] = 0.0;
   if (!f->ewald.box.periodic) return SD_OK;
@@ -282,17 +282,17 @@ sd_status sd_field_add_split(sd_field *f, const sd_field_sources *ours,
   const struct sd_field_kernels *kernels = SD_KERNELS_OF(sd_field, plain, sd_isa_of(SD_ISA_BEST));
   const double range = f->how.ewald.range;
   double mean[3];
-  sd_status status = make_tables(f, world);
+  sd_status status = field_make_tables(f, world);
   if (!sd_field_sort(&f->cells, ours->x, 3, ours->n, range)) status = SD_ENOMEMORY;
   status = sd_world_agree(world, status);
-  if (status == SD_OK) status = mean_of(f, ours, world, mean);
-  if (status == SD_OK) status = convolve(f, ours, world);
+  if (status == SD_OK) status = field_mean_of(f, ours, world, mean);
+  if (status == SD_OK) status = field_convolve(f, ours, world);
   if (status != SD_OK) return status;
   if (!sd_field_sort(&f->cells, near->x, 3, near->n, range) ||
       !list_sources(f, near, f->cells.order))
     return SD_ENOMEMORY;
   sd_field_part p = part_of(f, near->n, g, u);
-  range_of(f, &p);
+  field_range_of(f, &p);
   memcpy(p.mean, mean, sizeof(mean));
   status = sd_field_near(f, &p, kernels);
   return status == SD_OK ? sd_field_gather(f, g, kernels, u) : status;

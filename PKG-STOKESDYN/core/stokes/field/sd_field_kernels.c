@@ -194,7 +194,7 @@ static void windows(const sd_field_place *place, int n, int points, const double
 }
 
 /* n: a multiple of 4 */
-static void rows(const double *value, int points, const double *from, long n, double *out)
+static void field_rows(const double *value, int points, const double *from, long n, double *out)
 {
   enum { STEP = LANES < 4 ? LANES : 4 };
   for (long m = 0; m < n; m += STEP) {
@@ -211,4 +211,4 @@ static void rows(const double *value, int points, const double *from, long n, do
 }
 
 const struct sd_field_kernels SD_KERNELS(sd_field) = {direct, near_part_double, near_part_float,
-                                                        windows, rows};
+                                                        windows, field_rows};

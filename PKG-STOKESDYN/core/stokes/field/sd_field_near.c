@@ -16,7 +16,7 @@ static int along(const sd_field_cells *c, int d, double x)
 }
 
 /* Cells of at least this side, and not many more of them than places */
-static void cut(sd_field_cells *c, const double *x, long stride, int n, double side)
+static void near_cut(sd_field_cells *c, const double *x, long stride, int n, double side)
 {
   double hi[3], all;
   for (int d = 0; d < 3; d++) {
@@ -36,7 +36,7 @@ static void cut(sd_field_cells *c, const double *x, long stride, int n, double s
 
 int sd_field_sort(sd_field_cells *c, const double *x, long stride, int n, double side)
 {
-  cut(c, x, stride, n, side);
+  near_cut(c, x, stride, n, side);
   const size_t all = (size_t) c->n[0] * (size_t) c->n[1] * (size_t) c->n[2];
   if (!sd_reserve(&c->order, sizeof(int), 2 * (size_t) n + 1, &c->order_room) ||
       !sd_reserve(&c->first, sizeof(int), all + 1, &c->first_room))
@@ -130,7 +130,7 @@ static void hand_out(const blocks *q, const int *first)
     }
 }
 
-static int make_room(sd_field *f, blocks *q)
+static int near_make_room(sd_field *f, blocks *q)
 {
   const sd_field_cells *c = q->c;
   const size_t n = (size_t) q->p->n;
@@ -155,7 +155,7 @@ sd_status sd_field_near(sd_field *f, const sd_field_part *p, const struct sd_fie
   const struct sd_ewald_kernels *ewald = SD_KERNELS_OF(sd_ewald, plain, sd_isa_of(SD_ISA_BEST));
   blocks q = {.c = &f->cells, .p = p, .search = ewald->search};
   q.kernel = f->floats ? kernels->near_floats : kernels->near;
-  const int ok = make_room(f, &q);
+  const int ok = near_make_room(f, &q);
   int first[3];
   for (first[2] = 0; first[2] < p->points[2] && ok; first[2] += SD_FIELD_BLOCK)
     for (first[1] = 0; first[1] < p->points[1]; first[1] += SD_FIELD_BLOCK)

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-static double dot(long n, const double *a, const double *b)
+static double cg_dot(long n, const double *a, const double *b)
 {
   double sum = 0.0;
   for (long j = 0; j < n; j++) sum += a[j] * b[j];
@@ -11,13 +11,13 @@ static double dot(long n, const double *a, const double *b)
 }
 
 /* z = P r, with the sums that are about it; beta */
-static sd_status look(const sd_cg *A, const sd_cg_vectors *v, sd_cg_state *now)
+static sd_status cg_look(const sd_cg *A, const sd_cg_vectors *v, sd_cg_state *now)
 {
   double s[2 + SD_CG_OWN] = {0.0};
   sd_status status = A->precondition(A->ctx, v->r, v->z);
   if (status != SD_OK) return status;
-  s[0] = dot(A->paired, v->r, v->z);
-  if (now->steps > 0) s[1] = dot(A->paired, v->w, v->z);
+  s[0] = cg_dot(A->paired, v->r, v->z);
+  if (now->steps > 0) s[1] = cg_dot(A->paired, v->w, v->z);
   if (A->measure) A->measure(A->ctx, v, s + 2);
   if ((status = sd_world_sum(A->world, s, 2 + SD_CG_OWN)) != SD_OK) return status;
   for (int k = 0; k < 2 + SD_CG_OWN; k++)
@@ -33,7 +33,7 @@ static sd_status find_curvature(const sd_cg *A, const sd_cg_vectors *v, sd_cg_st
 {
   sd_status status = A->apply(A->ctx, v->p, v->w);
   if (status != SD_OK) return status;
-  double s[3] = {dot(A->paired, v->p, v->w), dot(A->paired, v->r, v->p),
+  double s[3] = {cg_dot(A->paired, v->p, v->w), cg_dot(A->paired, v->r, v->p),
                  A->square ? A->square(A->ctx, v->p) : 0.0};
   if ((status = sd_world_sum(A->world, s, 3)) != SD_OK) return status;
   now->pw = s[0];
@@ -50,7 +50,7 @@ sd_status sd_cg_run(const sd_cg *A, const sd_cg_vectors *v, sd_cg_state *now)
   memset(v->p, 0, sizeof(double) * (size_t) A->size);
   for (;; now->steps++) {
     int done = 0;
-    sd_status status = look(A, v, now);
+    sd_status status = cg_look(A, v, now);
     if (status == SD_OK) status = A->judge(A->ctx, now, &done);
     if (status != SD_OK || done) return status;
     for (long j = 0; j < A->size; j++) v->p[j] = v->z[j] + now->beta * v->p[j];

@@ -25,14 +25,14 @@ typedef struct {
   double p[SD_NOISE_MOST], c[SD_NOISE_MOST], before[SD_NOISE_MOST];
 } process;
 
-static double dot(long n, const double *a, const double *b)
+static double noise_dot(long n, const double *a, const double *b)
 {
   double sum = 0.0;
   for (long j = 0; j < n; j++) sum += a[j] * b[j];
   return sum;
 }
 
-static void divide(long n, double *v, double by)
+static void noise_divide(long n, double *v, double by)
 {
   for (long j = 0; j < n; j++) v[j] /= by;
 }
@@ -48,7 +48,7 @@ static sd_status take_half(const sd_noise_matrix *M, int back, const double *v, 
 }
 
 /* out = A v = P^T M P v */
-static sd_status apply(const process *q, const double *v, double *out)
+static sd_status noise_apply(const process *q, const double *v, double *out)
 {
   const sd_noise_matrix *M = q->M;
   double *force = q->s->work;
@@ -63,8 +63,8 @@ static sd_status orthogonalise(const process *q, int count, double *u, double *h
 {
   const long n = q->M->n;
   double sums[SD_NOISE_MOST + 1];
-  for (int k = 0; k < count; k++) sums[k] = dot(n, q->s->row[k], u);
-  sums[count] = dot(n, u, u);
+  for (int k = 0; k < count; k++) sums[k] = noise_dot(n, q->s->row[k], u);
+  sums[count] = noise_dot(n, u, u);
   const sd_status status = sd_world_sum(&q->M->world, sums, count + 1);
   if (status != SD_OK) return status;
   for (int k = 0; k < count; k++) {
@@ -86,13 +86,13 @@ static sd_status extend(process *q)
   const size_t n = (size_t) q->M->n;
   sd_status status =
       sd_reserve(s->row + m + 1, sizeof(double), n, s->room + m + 1) ? SD_OK : SD_ENOMEMORY;
-  if (status == SD_OK) status = apply(q, s->row[m], s->row[m + 1]);
+  if (status == SD_OK) status = noise_apply(q, s->row[m], s->row[m + 1]);
   for (int pass = 0; pass < 2 && status == SD_OK; pass++)
     status = orthogonalise(q, m + 1, s->row[m + 1], h, pass ? &left : &square);
   if (status != SD_OK) return status;
   q->alpha[m] = h[m];
   q->beta[m] = sqrt(left);
-  if (left > 0.0) divide(q->M->n, s->row[m + 1], q->beta[m]);
+  if (left > 0.0) noise_divide(q->M->n, s->row[m + 1], q->beta[m]);
   q->m++;
   return SD_OK;
 }
@@ -142,7 +142,7 @@ static sd_status find_error(const process *q, double *error)
 /* Coupled to nothing new: the vectors span all that A makes of w, and the roots are exact. */
 static const double NOTHING = 1e-12;
 
-static sd_status begin(process *q, const double *w)
+static sd_status noise_begin(process *q, const double *w)
 {
   const sd_noise_matrix *M = q->M;
   sd_noise *s = q->s;
@@ -150,18 +150,18 @@ static sd_status begin(process *q, const double *w)
       !sd_reserve(&s->work, sizeof(double), (size_t) M->n, &s->work_room))
     return SD_ENOMEMORY;
   for (long j = 0; j < M->n; j++) s->row[0][j] = M->D[j] > 0.0 ? w[j] : 0.0;
-  double square = dot(M->n, s->row[0], s->row[0]);
+  double square = noise_dot(M->n, s->row[0], s->row[0]);
   const sd_status status = sd_world_sum(&M->world, &square, 1);
   if (status != SD_OK) return status;
   q->length = sqrt(square);
-  if (q->length > 0.0) divide(M->n, s->row[0], q->length);
+  if (q->length > 0.0) noise_divide(M->n, s->row[0], q->length);
   return isfinite(square) ? SD_OK : SD_ENOTFINITE;
 }
 
-static sd_status iterate(process *q, const double *w, double tolerance, sd_noise_report *report)
+static sd_status noise_iterate(process *q, const double *w, double tolerance, sd_noise_report *report)
 {
   *report = (sd_noise_report){0};
-  sd_status status = begin(q, w);
+  sd_status status = noise_begin(q, w);
   while (status == SD_OK && q->length > 0.0) {
     if ((status = extend(q)) != SD_OK) break;
     report->products = q->m;
@@ -178,7 +178,7 @@ static sd_status iterate(process *q, const double *w, double tolerance, sd_noise
 }
 
 /* out = |w| V coefficients */
-static void combine(const process *q, const double *coefficients, double *out)
+static void noise_combine(const process *q, const double *coefficients, double *out)
 {
   memset(out, 0, sizeof(double) * (size_t) q->M->n);
   for (int k = 0; k < q->m; k++) {
@@ -191,9 +191,9 @@ sd_status sd_noise_velocities(sd_noise *s, const sd_noise_matrix *M, const doubl
                               double *y, sd_noise_report *report)
 {
   process q = {.s = s, .M = M};
-  const sd_status status = iterate(&q, w, tolerance, report);
+  const sd_status status = noise_iterate(&q, w, tolerance, report);
   if (status != SD_OK && status != SD_EMAXITER) return status;
-  combine(&q, q.p, y);
+  noise_combine(&q, q.p, y);
   if (M->half_inverse) {
     const sd_status last = M->half_inverse(M->half_ctx, y, y);
     return last == SD_OK ? status : last;

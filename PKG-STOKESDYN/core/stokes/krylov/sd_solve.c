@@ -180,13 +180,13 @@ typedef struct {
   sd_solve_report *report;
 } gradients;
 
-static long size_of(const gradients *g)
+static long solve_size_of(const gradients *g)
 {
   return (long) width_of(&g->A) * g->A.n;
 }
 
 /* w = M p = Omega p + D^-1 p; 0 in the rows of spheres that take no part */
-static sd_status apply(void *ctx, const double *p, double *w)
+static sd_status solve_apply(void *ctx, const double *p, double *w)
 {
   gradients *g = ctx;
   const int m = width_of(&g->A);
@@ -201,7 +201,7 @@ static sd_status apply(void *ctx, const double *p, double *w)
 }
 
 /* z = P r; without preconditioner P is D. */
-static sd_status precondition(void *ctx, const double *r, double *z)
+static sd_status solve_precondition(void *ctx, const double *r, double *z)
 {
   const sd_system *A = &((gradients *) ctx)->A;
   if (A->precondition) return A->precondition(A->precondition_ctx, r, z);
@@ -212,7 +212,7 @@ static sd_status precondition(void *ctx, const double *r, double *z)
 }
 
 /* p.D^-1 p: p.w / p.p is then a Rayleigh quotient of the mobility scaled to unit diagonal */
-static double square(void *ctx, const double *p)
+static double solve_square(void *ctx, const double *p)
 {
   const sd_system *A = &((gradients *) ctx)->A;
   const int m = width_of(A);
@@ -225,7 +225,7 @@ static double square(void *ctx, const double *p)
 
 enum { ZZ, YZ, YY };
 
-static void measure(void *ctx, const sd_cg_vectors *v, double own[SD_CG_OWN])
+static void solve_measure(void *ctx, const sd_cg_vectors *v, double own[SD_CG_OWN])
 {
   const gradients *g = ctx;
   const int m = width_of(&g->A);
@@ -255,7 +255,7 @@ static void smooth(gradients *g, const double own[SD_CG_OWN])
   g->report->residual = sqrt(fmax(of_y, 0.0) / g->rhs.plain);
 }
 
-static sd_status judge(void *ctx, const sd_cg_state *now, int *done)
+static sd_status solve_judge(void *ctx, const sd_cg_state *now, int *done)
 {
   gradients *g = ctx;
   sd_solve_report *report = g->report;
@@ -285,9 +285,9 @@ static sd_status verify(gradients *g)
 
 /* The first y: of the guess; or of F = 0, whose Omega F is 0, where that is nearer to the
  * answer. */
-static sd_status begin(gradients *g)
+static sd_status solve_begin(gradients *g)
 {
-  const size_t bytes = sizeof(double) * (size_t) size_of(g);
+  const size_t bytes = sizeof(double) * (size_t) solve_size_of(g);
   if (g->A.warm) {
     const sd_status status = verify(g);
     if (status != SD_OK) return status;
@@ -303,20 +303,20 @@ static sd_status begin(gradients *g)
  * tolerance, nothing is left of that of conjugate gradients, they are stuck, or all iterations are
  * used up. No force along p moves anything: slip along p has no answer then; where there is none, p
  * is rounding that the inverse of a nearly singular matrix, the preconditioner, has blown up. */
-static sd_status iterate(gradients *g)
+static sd_status solve_iterate(gradients *g)
 {
   const int m = width_of(&g->A);
-  const sd_cg cg = {.size = size_of(g),
-                    .paired = size_of(g),
+  const sd_cg cg = {.size = solve_size_of(g),
+                    .paired = solve_size_of(g),
                     .ctx = g,
-                    .apply = apply,
-                    .precondition = precondition,
-                    .measure = measure,
-                    .judge = judge,
-                    .square = square,
+                    .apply = solve_apply,
+                    .precondition = solve_precondition,
+                    .measure = solve_measure,
+                    .judge = solve_judge,
+                    .square = solve_square,
                     .world = &g->A.world};
   sd_cg_state state;
-  memcpy(g->v.x, g->F, sizeof(double) * (size_t) size_of(g));
+  memcpy(g->v.x, g->F, sizeof(double) * (size_t) solve_size_of(g));
   for (long i = 0; i < g->A.n; i++)
     for (int k = 0; k < m; k++) {
       const long j = m * i + k;
@@ -339,7 +339,7 @@ static sd_status repeat(gradients *g)
   sd_solve_report *report = g->report;
   double verified = INFINITY;
   for (;; g->steps = NULL) {
-    sd_status status = iterate(g);
+    sd_status status = solve_iterate(g);
     if (status == SD_OK) status = verify(g);
     if (status == SD_OK && !isfinite(report->residual)) status = SD_ENOTFINITE;
     if (status != SD_OK || report->residual <= g->tolerance) return status;
@@ -376,7 +376,7 @@ sd_status sd_solve_gradients(const sd_system *A, const double *slip, double tole
     memset(F, 0, bytes);
     return SD_OK;
   }
-  status = begin(&g);
+  status = solve_begin(&g);
   if (status != SD_OK || report->residual <= tolerance) return status;
   status = repeat(&g);
   find_ritz_values(&first, report);

@@ -84,7 +84,7 @@ static int reserve_entries(sd_block_cholesky *f, int more)
       sd_reserve(&w->target_block, sizeof(int), (size_t) more, &w->most_target_blocks);
 }
 
-static float *block_of(const struct sd_elimination *w, int b)
+static float *cholesky_block_of(const struct sd_elimination *w, int b)
 {
   return w->block + SD_BLOCK * (long) b;
 }
@@ -95,12 +95,12 @@ static float *pivot_of(const struct sd_elimination *w, int p)
 }
 
 /* There is room. */
-static int take_block(struct sd_elimination *w)
+static int cholesky_take_block(struct sd_elimination *w)
 {
   return w->free_blocks > 0 ? w->free_block[--w->free_blocks] : w->blocks++;
 }
 
-static void give_back(struct sd_elimination *w, int b)
+static void cholesky_give_back(struct sd_elimination *w, int b)
 {
   w->free_block[w->free_blocks++] = b;
 }
@@ -151,7 +151,7 @@ static int connect(struct sd_elimination *w, int p, int q, int block)
 }
 
 /* Marks who is next to p, and takes `gone` out of its list. */
-static void look_around(struct sd_elimination *w, int p, int gone)
+static void cholesky_look_around(struct sd_elimination *w, int p, int gone)
 {
   end_of_edge *list = w->end + w->node[p].list;
   for (int k = 0; k < w->node[p].degree; k++) {
@@ -184,7 +184,7 @@ sd_status sd_block_cholesky_begin(sd_block_cholesky *f, int n)
 }
 
 /* out += A or its transpose */
-static void add(const double A[36], int turned, float *out)
+static void cholesky_add(const double A[36], int turned, float *out)
 {
   for (int r = 0; r < 6; r++)
     for (int c = 0; c < 6; c++)
@@ -195,19 +195,19 @@ sd_status sd_block_cholesky_add(sd_block_cholesky *f, int p, int q, const double
 {
   struct sd_elimination *w = f->work;
   if (p == q) {
-    add(A, 0, pivot_of(w, p));
+    cholesky_add(A, 0, pivot_of(w, p));
     return SD_OK;
   }
   const end_of_edge *list = w->end + w->node[p].list;
   for (int e = 0; e < w->node[p].degree; e++)
     if (list[e].node == q) {
-      add(A, list[e].turned, block_of(w, list[e].block));
+      cholesky_add(A, list[e].turned, cholesky_block_of(w, list[e].block));
       return SD_OK;
     }
   if (!reserve_blocks(w, 1)) return SD_ENOMEMORY;
-  const int b = take_block(w);
-  memset(block_of(w, b), 0, sizeof(float) * SD_BLOCK);
-  add(A, 0, block_of(w, b));
+  const int b = cholesky_take_block(w);
+  memset(cholesky_block_of(w, b), 0, sizeof(float) * SD_BLOCK);
+  cholesky_add(A, 0, cholesky_block_of(w, b));
   return connect(w, p, q, b) ? SD_OK : SD_ENOMEMORY;
 }
 
@@ -232,10 +232,10 @@ static int take_column(sd_block_cholesky *f, int p)
     const end_of_edge e = list[k];
     float *A = f->column + SD_BLOCK * (w->entries + k);
     if (e.turned)
-      transpose(block_of(w, e.block), A);
+      transpose(cholesky_block_of(w, e.block), A);
     else
-      memcpy(A, block_of(w, e.block), sizeof(float) * SD_BLOCK);
-    give_back(w, e.block);
+      memcpy(A, cholesky_block_of(w, e.block), sizeof(float) * SD_BLOCK);
+    cholesky_give_back(w, e.block);
     f->row[w->entries + k] = e.node;
     leave_queue(w, e.node);
   }
@@ -252,7 +252,7 @@ static sd_status keep_or_drop(struct sd_elimination *w, int q, int count, const 
       if (!connect(w, q, r[t], w->target_block[t])) return SD_ENOMEMORY;
       continue;
     }
-    give_back(w, w->target_block[t]);
+    cholesky_give_back(w, w->target_block[t]);
     w->node[q].lost += norm;
     w->node[r[t]].lost += norm;
   }
@@ -265,14 +265,14 @@ static sd_status couple(struct sd_elimination *w, int p, int q, int count, const
                         const float *C, float drop)
 {
   if (!reserve_blocks(w, count)) return SD_ENOMEMORY;
-  look_around(w, q, p);
+  cholesky_look_around(w, q, p);
   const end_of_edge *list = w->end + w->node[q].list;
   for (int t = 0; t < count; t++) {
     const node *other = w->node + r[t];
     const end_of_edge *e = other->stamp == q ? list + other->seen : NULL;
-    const int b = e ? e->block : take_block(w);
+    const int b = e ? e->block : cholesky_take_block(w);
     w->target_block[t] = b;
-    w->target[t].to = block_of(w, b);
+    w->target[t].to = cholesky_block_of(w, b);
     w->target[t].way = !e ? SD_BLOCK_NEW : e->turned ? SD_BLOCK_TURNED : SD_BLOCK_AS_IT_IS;
   }
   w->kernels->subtract(C, pivot_of(w, q), count, w->target);

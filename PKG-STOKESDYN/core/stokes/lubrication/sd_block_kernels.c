@@ -52,7 +52,7 @@ static int factor(float *A, float part[6])
 }
 
 /* X = U^-1 from U X = 1, row by row from below */
-static void invert(const float *U, const float part[6], float *X)
+static void block_invert(const float *U, const float part[6], float *X)
 {
   for (int p = 5; p >= 0; p--) {
     float unit[ROW] = {0.0f};
@@ -65,11 +65,11 @@ static void invert(const float *U, const float part[6], float *X)
   }
 }
 
-static int divide(float *pivot, float *inverse, int count, float *column)
+static int block_divide(float *pivot, float *inverse, int count, float *column)
 {
   float part[6];
   if (!factor(pivot, part)) return 0;
-  invert(pivot, part, inverse);
+  block_invert(pivot, part, inverse);
   for (int c = 0; c < count; c++)
     for (int h = 0; h < ROW; h += FLOATS) {
       float *B = column + SD_BLOCK * (long) c + h;
@@ -111,7 +111,7 @@ INLINE float set_product(const float *A, const float *B, float *out)
   return six_of(lanes);
 }
 
-static void subtract(const float *column, float *pivot, int count, sd_block_target *target)
+static void block_subtract(const float *column, float *pivot, int count, sd_block_target *target)
 {
   subtract_product(column, column, pivot);
   for (int t = 0; t < count; t++) {
@@ -144,7 +144,7 @@ INLINE void backward(const float *A, const float *v, float *sums)
     AT(sums + k) += AT(A + k) * AT(v + k % ROW);
 }
 
-static void apply(const sd_block_cholesky *f)
+static void block_apply(const sd_block_cholesky *f)
 {
   float *v = f->vector;
   for (long k = 0; k < f->n; k++) {
@@ -165,4 +165,4 @@ static void apply(const sd_block_cholesky *f)
   }
 }
 
-const struct sd_block_kernels SD_KERNELS(sd_block) = {divide, subtract, apply};
+const struct sd_block_kernels SD_KERNELS(sd_block) = {block_divide, block_subtract, block_apply};

@@ -78,14 +78,14 @@ static int one_body(const sd_lubrication *L, int i, int j)
 }
 
 /* Of a pair, over its mean radius */
-static double range_of(const sd_lubrication_scene *s, double ai, double aj)
+static double film_range_of(const sd_lubrication_scene *s, double ai, double aj)
 {
   const double sum = ai + aj;
   return s->points ? s->range * 4.0 * ai * aj / (sum * sum) : s->range;
 }
 
 /* What there is to know of a pair where it stands; d from sphere i to j */
-static closeness look(const sd_lubrication_scene *s, int i, int j, double d[3])
+static closeness film_look(const sd_lubrication_scene *s, int i, int j, double d[3])
 {
   const sd_spheres *p = &s->spheres;
   sd_minus(p->x + 3 * (long) j, p->x + 3 * (long) i, d);
@@ -95,7 +95,7 @@ static closeness look(const sd_lubrication_scene *s, int i, int j, double d[3])
   else
     d[2] = 1.0; /* spheres at one point: any direction */
   const double xi = 2.0 * (R / (p->a[i] + p->a[j]) - 1.0);
-  const double range = range_of(s, p->a[i], p->a[j]);
+  const double range = film_range_of(s, p->a[i], p->a[j]);
   const double q = fmin(fmax(2.0 * xi / range - 1.0, 0.0), 1.0);
   closeness close = {xi, 1.0 - q * q * (3.0 - 2.0 * q), R, {0.0, 0.0, 0.0}, j};
   if (s->drift && j >= s->n)
@@ -108,7 +108,7 @@ static void keep_pair(sd_lubrication *L, const sd_lubrication_scene *s, long *co
                       int at)
 {
   if (one_body(L, i, at)) return;
-  const closeness close = look(s, i, at, L->link[*count].d);
+  const closeness close = film_look(s, i, at, L->link[*count].d);
   if (!(close.t > 0.0)) return;
   L->pair[*count][0] = i;
   L->pair[*count][1] = j;
@@ -201,8 +201,8 @@ typedef struct {
 
 /* What the flow does to sphere i, the first or the second of a pair, from its own block and that with
  * the other */
-static void carry(sd_lubrication *L, long i, int second, sd_lubrication_link own,
-                  sd_lubrication_link with, const carriage *c)
+static void film_carry(sd_lubrication *L, long i, int second, sd_lubrication_link own,
+                       sd_lubrication_link with, const carriage *c)
 {
   double force[6] = {0.0}, *strain = L->strain + 7 * i;
   add_product(&own, c->V[second], force);
@@ -230,8 +230,8 @@ static void add_carried(sd_lubrication *L, const sd_lubrication_scene *s, long k
   for (int q = 0; q < 12; q++) c.e[q / 6][q % 6] = c.V[q / 6][q % 6] - u[q / 6][q % 6];
   /* L V is of velocities without the drift: what that makes of V_inf is left */
   for (int q = 0; s->drift && at >= s->n && q < 3; q++) c.V[1][q] -= s->drift[3 * (at - s->n) + q];
-  carry(L, i, 0, block_of(R, 0, d), B12, &c);
-  if (j < L->n && j != i) carry(L, j, 1, block_of(R, 2, d), exchanged(B12), &c);
+  film_carry(L, i, 0, block_of(R, 0, d), B12, &c);
+  if (j < L->n && j != i) film_carry(L, j, 1, block_of(R, 2, d), exchanged(B12), &c);
 }
 
 /* x^1.2, 0 < x <= 1; pow() would take a good part of all. x^-0.2 by Newton's steps from a guess,
@@ -259,7 +259,7 @@ static sd_status resistance_of(const sd_lubrication *L, const sd_lubrication_sce
   const int i = L->pair[k][0];
   const double *n = L->work->neighbours, ai = s->spheres.a[i], aj = s->spheres.a[c->at];
   const double scale = c->t * eta, xi = fmax(c->xi, s->gap), apart = fmax(c->xi, 0.0);
-  const double q = fmin(apart / range_of(s, ai, aj), 1.0), fading = 1.0 - q * q * (3.0 - 2.0 * q);
+  const double q = fmin(apart / film_range_of(s, ai, aj), 1.0), fading = 1.0 - q * q * (3.0 - 2.0 * q);
   if (!s->films) {
     *model = fading * sd_rpy_approach((1.0 + 0.5 * apart) * (ai + aj), ai, aj, eta);
     const double share = shared(2.0 * c->t / (n[i] + n[c->at]));

@@ -8,8 +8,8 @@
 
 /* Of pair k on its first sphere and its second, as they are in the pair, F [12]. An image of the
  * sphere itself is seen from both sides, and acts from one. */
-static sd_status draw_pair(const sd_lubrication *L, long k, sd_lubrication_normals *normals,
-                           void *ctx, double F[12])
+static sd_status noise_draw_pair(const sd_lubrication *L, long k, sd_lubrication_normals *normals,
+                                 void *ctx, double F[12])
 {
   const whole_pair *pair = L->work->whole + k;
   const int i = L->pair[k][0], self = L->pair[k][1] == i;
@@ -49,7 +49,7 @@ sd_status sd_lubrication_noise(const sd_lubrication *L, sd_lubrication_normals *
   double of_pair[12];
   for (long k = 0; k < L->count; k++) {
     const int i = L->pair[k][0], j = L->pair[k][1];
-    const sd_status status = draw_pair(L, k, normals, ctx, of_pair);
+    const sd_status status = noise_draw_pair(L, k, normals, ctx, of_pair);
     if (status != SD_OK) return status;
     for (int p = 0; p < 6; p++) {
       F[6 * (long) i + p] += of_pair[p];

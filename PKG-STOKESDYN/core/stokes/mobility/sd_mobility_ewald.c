@@ -110,7 +110,7 @@ static sd_status me_place(void *state, const sd_mobility_scene *s)
 /* --- product --- */
 
 /* Sums [9] over all spheres of w F, b w F and w T: what is far is felt as a mean. */
-static sd_status sums_of(const ewald *e, const double *F, double *sums)
+static sd_status ewald_sums_of(const ewald *e, const double *F, double *sums)
 {
   const sd_rank_spheres *here = &e->here;
   const long m = e->width;
@@ -155,7 +155,7 @@ static void add_far(const ewald *e, const void *rows, const double *sums, double
 static sd_status me_near_part(ewald *e, const double *F, double *u, double *sums)
 {
   sd_rank_spheres *here = &e->here;
-  sd_status status = e->ewald.box.periodic ? sums_of(e, F, sums) : SD_OK;
+  sd_status status = e->ewald.box.periodic ? ewald_sums_of(e, F, sums) : SD_OK;
   if (status == SD_OK) status = sd_rank_spheres_refresh(here, &e->world, F);
   if (status != SD_OK) return status;
   sd_ewald_pairs_apply(&e->pairs, here->n, F, here->ghosts, u);

@@ -30,7 +30,7 @@ typedef struct {
 
 /* --- tables of a splitting --- */
 
-static sd_status make_tables(slab *s, const sd_mobility_scene *scene)
+static sd_status slab_make_tables(slab *s, const sd_mobility_scene *scene)
 {
   const sd_slab *how = scene->how.slab;
   s->ready = 0;
@@ -95,7 +95,7 @@ static sd_status place(void *state, const sd_mobility_scene *scene)
   sd_rank_spheres *here = &s->here;
   const int n = here->n = scene->n;
   sd_status status = SD_OK;
-  if (!s->ready || !sd_slab_same_tables(&s->slab, scene->how.slab)) status = make_tables(s, scene);
+  if (!s->ready || !sd_slab_same_tables(&s->slab, scene->how.slab)) status = slab_make_tables(s, scene);
   s->world = scene->world;
   s->waves.grid.world = scene->world;
   if (!(s->slab.ewald.count > 0.0)) return status;
@@ -118,7 +118,7 @@ static sd_status place(void *state, const sd_mobility_scene *scene)
 /* --- product --- */
 
 /* Sums over all spheres of F, z F and (z^2 + 2 A) F along the slab, A = a^2/6: [2][3] */
-static sd_status sums_of(const slab *s, const double *F, double *sums)
+static sd_status slab_sums_of(const slab *s, const double *F, double *sums)
 {
   const sd_rank_spheres *here = &s->here;
   const int axis = s->slab.walls.wall->axis;
@@ -160,7 +160,7 @@ static void add_means(const slab *s, const double *sums, double *u)
   }
 }
 
-static sd_status apply(void *state, const double *F, double *u)
+static sd_status slab_apply(void *state, const double *F, double *u)
 {
   slab *s = state;
   sd_rank_spheres *here = &s->here;
@@ -169,7 +169,7 @@ static sd_status apply(void *state, const double *F, double *u)
     memset(u, 0, 3 * sizeof(double) * (size_t) s->here.n);
     return SD_OK;
   }
-  sd_status status = sums_of(s, F, sums);
+  sd_status status = slab_sums_of(s, F, sums);
   if (status == SD_OK) status = sd_rank_spheres_refresh(here, &s->world, F);
   if (status != SD_OK) return status;
   sd_ewald_pairs_apply(&s->pairs, here->n, F, here->ghosts, u);
@@ -183,7 +183,7 @@ static sd_status apply(void *state, const double *F, double *u)
   return SD_OK;
 }
 
-static void release(void *state)
+static void slab_release(void *state)
 {
   slab *s = state;
   sd_ewald_pairs_free(&s->pairs);
@@ -199,6 +199,6 @@ const sd_mobility_engine sd_mobility_slab = {
     .state = sizeof(slab),
     .view = SD_VIEW_NEAR,
     .place = place,
-    .apply = apply,
-    .free = release,
+    .apply = slab_apply,
+    .free = slab_release,
 };

@@ -26,8 +26,8 @@ sd_multiblob_mask sd_multiblob_whole(const sd_multiblob *m)
 }
 
 /* Member i loses what is inside member j. */
-static void cut(const sd_multiblob *of_i, const sd_multiblob *of_j, const sd_shape *clump, int i,
-                int j, const double turn[9], sd_multiblob_mask *mask)
+static void points_cut(const sd_multiblob *of_i, const sd_multiblob *of_j, const sd_shape *clump, int i,
+                       int j, const double turn[9], sd_multiblob_mask *mask)
 {
   const double *x = clump->x + 3 * (long) i, a = clump->a[i];
   set(mask, 0, 0);
@@ -49,7 +49,7 @@ void sd_multiblob_masks(const sd_multiblob *m, const int *kind, const sd_shape *
     mask[i] = sd_multiblob_whole(of_i);
     for (int j = 0; j < clump->n; j++)
       if (j != i && inside(x, clump->x + 3 * (long) j, a + clump->a[j] - hair))
-        cut(of_i, m + (kind ? kind[j] : 0), clump, i, j, turn, mask + i);
+        points_cut(of_i, m + (kind ? kind[j] : 0), clump, i, j, turn, mask + i);
   }
 }
 

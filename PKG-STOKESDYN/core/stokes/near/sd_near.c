@@ -46,7 +46,7 @@ static sd_status create(search *q)
   return q->cell && q->sorted && pairs ? status : SD_ENOMEMORY;
 }
 
-static void release(search *q)
+static void near_release(search *q)
 {
   sd_cells_free(&q->hash);
   free(q->cell);
@@ -75,7 +75,7 @@ static sd_status look_at(search *q, const sphere *one, int begin, int end)
   return SD_OK;
 }
 
-static int size_of(const search *q, int i)
+static int near_size_of(const search *q, int i)
 {
   return q->s->a[i] > 0.0 ? ilogb(q->s->a[i]) : INT_MAX;
 }
@@ -93,7 +93,7 @@ static void sort_into_cells(search *q, int size)
   int64_t at[3];
   q->cells = 0;
   for (int i = 0; i < q->n_all; i++) {
-    if (size_of(q, i) != size) continue;
+    if (near_size_of(q, i) != size) continue;
     for (int d = 0; d < 3; d++) at[d] = sd_cells_along(&q->hash, q->s->x[3 * (long) i + d]);
     sd_cell *slot = sd_cells_slot(&q->hash, at[0], at[1], at[2], &number);
     if (slot->first < 0) {
@@ -109,12 +109,12 @@ static void sort_into_cells(search *q, int size)
     before += count;
   }
   for (int i = 0; i < q->n_all; i++)
-    if (size_of(q, i) == size) q->sorted[q->cell[q->hash.next[i]].end++] = sphere_of(q, i);
+    if (near_size_of(q, i) == size) q->sorted[q->cell[q->hash.next[i]].end++] = sphere_of(q, i);
 }
 
 /* Pairs of one size: those within cell c, and those with half of its neighbours, which do not look
  * at c again */
-static sd_status look_around(search *q, int c)
+static sd_status near_look_around(search *q, int c)
 {
   const cell *own = q->cell + c;
   sd_status status = SD_OK;
@@ -150,7 +150,7 @@ static sd_status find(search *q)
   int lowest = INT_MAX, highest = INT_MIN;
   for (int i = 0; i < q->n_all; i++)
     if (q->s->a[i] > 0.0) {
-      const int size = size_of(q, i);
+      const int size = near_size_of(q, i);
       lowest = size < lowest ? size : lowest;
       highest = size > highest ? size : highest;
     }
@@ -158,13 +158,13 @@ static sd_status find(search *q)
   for (int size = lowest; size <= highest && status == SD_OK; size++) {
     double largest = 0.0;
     for (int i = 0; i < q->n_all; i++)
-      if (q->s->a[i] > largest && size_of(q, i) == size) largest = q->s->a[i];
+      if (q->s->a[i] > largest && near_size_of(q, i) == size) largest = q->s->a[i];
     if (largest == 0.0) continue;
     sd_cells_clear(&q->hash, (double[3]){0.0, 0.0, 0.0}, (1.0 + 1e-6) * q->reach * largest);
     sort_into_cells(q, size);
-    for (int c = 0; c < q->cells && status == SD_OK; c++) status = look_around(q, c);
+    for (int c = 0; c < q->cells && status == SD_OK; c++) status = near_look_around(q, c);
     for (int i = 0; i < q->n_all && status == SD_OK && lowest < size; i++)
-      if (size_of(q, i) < size) status = look_from(q, i, largest);
+      if (near_size_of(q, i) < size) status = look_from(q, i, largest);
   }
   return status;
 }
@@ -197,6 +197,6 @@ sd_status sd_near_once(sd_neighbors *list, const sd_spheres *s, int n, int n_all
   search q = {.s = s, .n = n, .n_all = n_all, .reach = reach};
   sd_status status = find(&q);
   if (status == SD_OK) status = sort_rows(list, &q);
-  release(&q);
+  near_release(&q);
   return status;
 }

@@ -4,7 +4,7 @@
 #include "sd_lanes.h"
 
 /* Four columns at a time: what they are added to is read and written once for all four. */
-static void multiply(long size, const double *A, const double *in, double *out)
+static void blocks_multiply(long size, const double *A, const double *in, double *out)
 {
   memset(out, 0, sizeof(double) * (size_t) size);
   for (long q = 0; q < size; q += 4) {
@@ -22,4 +22,4 @@ static void multiply(long size, const double *A, const double *in, double *out)
   }
 }
 
-const struct sd_blocks_kernels SD_KERNELS(sd_blocks) = {multiply};
+const struct sd_blocks_kernels SD_KERNELS(sd_blocks) = {blocks_multiply};

@@ -18,7 +18,7 @@ void sd_preconditioner_free(sd_preconditioner *p)
 }
 
 /* Eight bytes at a time, each of them with all before it */
-static uint64_t hash(uint64_t before, const void *from, size_t bytes)
+static uint64_t preconditioner_hash(uint64_t before, const void *from, size_t bytes)
 {
   for (size_t at = 0; at < bytes; at += 8) {
     uint64_t word = 0;
@@ -33,14 +33,14 @@ static uint64_t fingerprint(const sd_precondition_case *c)
 {
   const size_t n = (size_t) c->n, clumps = (size_t) c->clumps;
   const int sizes[3] = {c->n, c->width, c->clumps};
-  uint64_t h = hash(0, sizes, sizeof(sizes));
-  h = hash(h, c->spheres.x, 3 * n * sizeof(double));
-  h = hash(h, c->spheres.a, n * sizeof(double));
-  if (c->box) h = hash(h, c->box->edge, sizeof(c->box->edge));
-  if (c->box) h = hash(h, c->box->tilt, sizeof(c->box->tilt));
+  uint64_t h = preconditioner_hash(0, sizes, sizeof(sizes));
+  h = preconditioner_hash(h, c->spheres.x, 3 * n * sizeof(double));
+  h = preconditioner_hash(h, c->spheres.a, n * sizeof(double));
+  if (c->box) h = preconditioner_hash(h, c->box->edge, sizeof(c->box->edge));
+  if (c->box) h = preconditioner_hash(h, c->box->tilt, sizeof(c->box->tilt));
   if (clumps == 0) return h;
-  h = hash(h, c->first, (clumps + 1) * sizeof(long));
-  return hash(h, c->member, (size_t) c->first[clumps] * sizeof(int));
+  h = preconditioner_hash(h, c->first, (clumps + 1) * sizeof(long));
+  return preconditioner_hash(h, c->member, (size_t) c->first[clumps] * sizeof(int));
 }
 
 static sd_status pr_begin(sd_preconditioner *p, const sd_precondition_kind *kind,

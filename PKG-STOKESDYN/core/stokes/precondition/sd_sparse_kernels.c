@@ -15,8 +15,8 @@ INLINE row4 column_at(const float *value)
 }
 
 /* The fourth number is padding. */
-static void three(int columns, const long *first, const int *row, const float *value,
-                  const double *in, double *out)
+static void sparse_three(int columns, const long *first, const int *row, const float *value,
+                         const double *in, double *out)
 {
   for (int k = 0; k < columns; k++) {
     row4 s0 = {0.0, 0.0, 0.0, 0.0}, s1 = s0, s2 = s0;
@@ -94,11 +94,11 @@ static void six(int columns, const long *first, const int *row, const float *val
 }
 #endif
 #if SD_LANES == 1
-static void three(int columns, const long *first, const int *row, const float *value,
-                  const double *in, double *out)
+static void sparse_three(int columns, const long *first, const int *row, const float *value,
+                         const double *in, double *out)
 {
   plain(3, 4, columns, first, row, value, in, out);
 }
 #endif
 
-const struct sd_sparse_kernels SD_KERNELS(sd_sparse) = {three, six};
+const struct sd_sparse_kernels SD_KERNELS(sd_sparse) = {sparse_three, six};

@@ -189,7 +189,7 @@ INLINE void rows_by(const sd_waves *p, int width, const int *sphere, int count, 
 }
 
 /* The compiler is to see the loops whole for either width. */
-static void multiply(const sd_waves *p, const double *F, double *y)
+static void waves_multiply(const sd_waves *p, const double *F, double *y)
 {
   if (p->width == 3)
     multiply_by(p, 3, F, y);
@@ -197,7 +197,7 @@ static void multiply(const sd_waves *p, const double *F, double *y)
     multiply_by(p, 6, F, y);
 }
 
-static void subtract(const sd_waves *p, const double *y, double *F)
+static void waves_subtract(const sd_waves *p, const double *y, double *F)
 {
   if (p->width == 3)
     subtract_by(p, 3, y, F);
@@ -205,7 +205,7 @@ static void subtract(const sd_waves *p, const double *y, double *F)
     subtract_by(p, 6, y, F);
 }
 
-static void rows(const sd_waves *p, const int *sphere, int count, double *out)
+static void waves_rows(const sd_waves *p, const int *sphere, int count, double *out)
 {
   if (p->width == 3)
     rows_by(p, 3, sphere, count, out);
@@ -213,4 +213,4 @@ static void rows(const sd_waves *p, const int *sphere, int count, double *out)
     rows_by(p, 6, sphere, count, out);
 }
 
-const struct sd_waves_kernels SD_KERNELS(sd_waves) = {multiply, subtract, rows};
+const struct sd_waves_kernels SD_KERNELS(sd_waves) = {waves_multiply, waves_subtract, waves_rows};

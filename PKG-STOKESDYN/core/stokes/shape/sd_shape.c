@@ -105,7 +105,7 @@ static void pair_key(const cluster *c, int i, int j, double key[SD_SHAPE_KEYS])
 }
 
 /* -1, 0, 1: is the key smaller, equal within tolerance, larger? */
-static int compare(const double *key, const double *other, int count, double tolerance)
+static int shape_compare(const double *key, const double *other, int count, double tolerance)
 {
   for (int m = 0; m < count; m++) {
     if (key[m] > other[m] + tolerance) return 1;
@@ -125,7 +125,7 @@ static void best_key(const cluster *c, double near, double best[SD_SHAPE_KEYS])
     for (int j = 0; j < c->n; j++) {
       double key[SD_SHAPE_KEYS];
       pair_key(c, i, j, key);
-      if (compare(key, best, keys(c), near) > 0) memcpy(best, key, sizeof(double) * keys(c));
+      if (shape_compare(key, best, keys(c), near) > 0) memcpy(best, key, sizeof(double) * keys(c));
     }
   }
 }
@@ -143,14 +143,14 @@ static int next_frame(const cluster *c, const double *key, double near, walk *at
   const int others = c->rank == 2 ? c->n : c->rank == 1 ? 8 : 1, first = c->rank ? c->n : 1;
   for (; at->i < first; at->i++, at->j = 0) {
     const double *x = c->x + 3 * at->i, mine[2] = {length(x), c->a[at->i]};
-    if (c->rank && compare(mine, key, 2, near) != 0) continue;
+    if (c->rank && shape_compare(mine, key, 2, near) != 0) continue;
     while (at->j < 2 * others) {
       const int j = at->j / 2, hand = at->j % 2 ? -1 : 1;
       at->j++;
       double other[SD_SHAPE_KEYS], y[3];
       if (c->rank == 2) {
         pair_key(c, at->i, j, other);
-        if (compare(other, key, SD_SHAPE_KEYS, near) != 0) continue;
+        if (shape_compare(other, key, SD_SHAPE_KEYS, near) != 0) continue;
         memcpy(y, c->x + 3 * j, sizeof(y));
       } else if (c->rank == 1)
         across(x, 0.25 * SD_PI * j, y);

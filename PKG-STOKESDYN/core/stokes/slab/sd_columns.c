@@ -111,7 +111,7 @@ static void copy_corner(const sd_columns *c, const double *from, double *to)
   for (long m = 0; m < (long) c->corner_sums * SD_CORNERS; m++) to[m * W] = from[m * W];
 }
 
-static int wave_number(int m, int n)
+static int columns_wave_number(int m, int n)
 {
   return m < (n + 1) / 2 ? m : m - n;
 }
@@ -137,7 +137,7 @@ static void fill_wave(sd_columns *c, sd_slab_corner *corner, int y, int z, int e
   const sd_ewald *e = &c->slab.ewald;
   int d[2];
   along_slab(c, d);
-  const int wave[2] = {wave_number(y, e->grid[d[0]]), z};
+  const int wave[2] = {columns_wave_number(y, e->grid[d[0]]), z};
   const double k[2] = {2.0 * SD_PI * wave[0] / e->box.edge[d[0]],
                        2.0 * SD_PI * wave[1] / e->box.edge[d[1]]};
   const double unit = unit_of(c, wave, k);
@@ -193,7 +193,7 @@ static void fill_tail(sd_columns *c)
   }
 }
 
-static sd_status make_tables(sd_columns *c, const int *y, const int *z, sd_slab_corner *corner)
+static sd_status columns_make_tables(sd_columns *c, const int *y, const int *z, sd_slab_corner *corner)
 {
   if (!allocate(c, y[1] - y[0])) return SD_ENOMEMORY;
   for (int row = y[0]; row < y[1]; row++)
@@ -224,7 +224,7 @@ sd_status sd_columns_create(sd_columns *c, const sd_slab *slab,
     c->corner_planes = corner.sums < slab->ewald.slab.planes ? corner.sums
                                                              : slab->ewald.slab.planes;
   }
-  if (status == SD_OK) status = make_tables(c, y, z, &corner);
+  if (status == SD_OK) status = columns_make_tables(c, y, z, &corner);
   sd_slab_corner_free(&corner);
   return status;
 }
@@ -239,8 +239,8 @@ static int plane_at(const sd_columns *c, int p)
 
 /* Velocities u [planes] at k = 0 in one direction: what the range cuts off, and corners; across:
  * is the direction */
-static void mean_of(const sd_columns *c, int across, double unit, double over, const double *f,
-                    double *u, long stride)
+static void columns_mean_of(const sd_columns *c, int across, double unit, double over, const double *f,
+                            double *u, long stride)
 {
   const int planes = c->slab.ewald.slab.planes, walls = sd_slab_many_walls(&c->slab.walls);
   const double *tail = c->tail[across], *corner = c->corner_mean[across];
@@ -278,8 +278,8 @@ static void put_mean(sd_columns *c, double *const *fields)
   const int planes = e->slab.planes, none[2] = {0};
   const double k[2] = {0.0}, w = sd_window_transform(e->points, e->beta, 0.0);
   for (int d = 0; d < 3; d++)
-    mean_of(c, d == 0, unit_of(c, none, k), 1.0 / (w * w), c->forces + d * planes, fields[d],
-            2L * c->depth);
+    columns_mean_of(c, d == 0, unit_of(c, none, k), 1.0 / (w * w), c->forces + d * planes, fields[d],
+                    2L * c->depth);
 }
 
 void sd_columns_apply(void *ctx, int y, double *const *fields)

@@ -75,7 +75,7 @@ void sd_slab_corner_free(sd_slab_corner *c)
   memset(c, 0, sizeof(*c));
 }
 
-static double *numbers(size_t count)
+static double *wave_numbers(size_t count)
 {
   return malloc(sizeof(double) * (count + 1));
 }
@@ -128,13 +128,13 @@ sd_status sd_slab_corner_create(sd_slab_corner *c, const sd_slab *slab)
   c->period = 2.0 * c->waves * h;
   c->waves--;
   const size_t row = (size_t) c->waves + 1, all = row * (size_t) c->sums;
-  c->q = numbers(row);
-  c->window = numbers(row);
-  c->gamma = numbers(row);
-  c->taper = numbers((size_t) c->sums);
-  c->cosine = numbers(all);
-  c->sine = numbers(all);
-  c->work = numbers(11 * row);
+  c->q = wave_numbers(row);
+  c->window = wave_numbers(row);
+  c->gamma = wave_numbers(row);
+  c->taper = wave_numbers((size_t) c->sums);
+  c->cosine = wave_numbers(all);
+  c->sine = wave_numbers(all);
+  c->work = wave_numbers(11 * row);
   if (!c->q || !c->window || !c->gamma || !c->taper || !c->cosine || !c->sine || !c->work) {
     sd_slab_corner_free(c);
     return SD_ENOMEMORY;

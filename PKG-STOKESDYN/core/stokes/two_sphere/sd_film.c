@@ -137,7 +137,7 @@ static sd_status film_alike(const sd_films *films, double a1, double a2, double 
   return film_of(films, a2 > a1 ? unequal : films->equal, node_of_xi(xi), a1, a2, xi, film);
 }
 
-static void exchange(sd_film *film)
+static void film_exchange(sd_film *film)
 {
   const double B = film->B[0];
   film->B[0] = film->B[2];
@@ -148,7 +148,7 @@ sd_status sd_film_at(const sd_films *films, double a1, double a2, double xi, sd_
 {
   const double small = a1 < a2 ? a1 : a2, large = a1 < a2 ? a2 : a1;
   const sd_status status = film_alike(films, small, large, xi, film);
-  if (a1 > a2) exchange(film);
+  if (a1 > a2) film_exchange(film);
   return status;
 }
 
@@ -188,7 +188,7 @@ sd_status sd_film_between(const sd_films *films, int n1, int n2, double a1, doub
   if (!films->half || (n1 == 12 && n2 == 12)) return sd_film_at(films, a1, a2, xi, film);
   const sd_status status = a1 <= a2 ? film_by_radius(films, n1, n2, a1, a2, xi, film)
                                     : film_by_radius(films, n2, n1, a2, a1, xi, film);
-  if (a1 > a2 && status == SD_OK) exchange(film);
+  if (a1 > a2 && status == SD_OK) film_exchange(film);
   return status;
 }
 

@@ -26,7 +26,7 @@ static double largest_of(const sd_pair_resistance *S)
 }
 
 /* The symmetric root of A [n n], n <= 4; what is above least <= 0 counts as 0 */
-static sd_status take_root(int n, const double *A, double least, double *root)
+static sd_status pair_take_root(int n, const double *A, double least, double *root)
 {
   double w[4], V[16];
   sd_eigen(n, A, w, V);
@@ -46,7 +46,7 @@ static sd_status add_along(const double X[3], double least, const double d[3], c
 {
   const double A[4] = {X[0], X[1], X[1], X[2]};
   double root[4];
-  const sd_status status = take_root(2, A, least, root);
+  const sd_status status = pair_take_root(2, A, least, root);
   for (int i = 0; i < 2 && status == SD_OK; i++)
     for (int e = 0; e < 3; e++)
       F[6 * i + at + e] += (root[2 * i] * from[0] + root[2 * i + 1] * from[1]) * d[e];
@@ -61,7 +61,7 @@ static sd_status add_across(const sd_pair_resistance *S, double least, const dou
   const double A[16] = {a[0], a[1], b[0], b[2], a[1], a[2], b[1], b[3],
                         b[0], b[1], c[0], c[1], b[2], b[3], c[1], c[2]};
   double root[16];
-  const sd_status status = take_root(4, A, least, root);
+  const sd_status status = pair_take_root(4, A, least, root);
   for (int p = 0; p < 4 && status == SD_OK; p++) {
     double sum[3] = {0.0}, turned[3], *to = F + 6 * (p % 2) + 3 * (p / 2);
     for (int k = 0; k < 4; k++)

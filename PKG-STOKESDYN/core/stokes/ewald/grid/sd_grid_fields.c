@@ -286,7 +286,7 @@ static void through_plane(sd_grid *g, int y, sd_grid_multiply *multiply, void *c
 /* --- all of it --- */
 
 /* What is in message `from` to the other ranks, what they send to the other message */
-static sd_status exchange(const sd_grid *g, int from, int to_counts, int from_counts)
+static sd_status grid_exchange(const sd_grid *g, int from, int to_counts, int from_counts)
 {
   if (g->ranks == 1) return SD_OK;
   return g->world.exchange(g->world.ctx, g->message[from], g->counts + to_counts * g->ranks,
@@ -314,7 +314,7 @@ static sd_status forth(sd_grid *g, sd_grid_fill *fill, void *fill_ctx)
     }
   }
   if (g->columns == 1) return SD_OK;
-  const sd_status status = exchange(g, 0, ROW_TO, ROW_FROM);
+  const sd_status status = grid_exchange(g, 0, ROW_TO, ROW_FROM);
   for (int k = x[0]; k < x[1] && status == SD_OK; k++)
     for (int c = 0; c < 3; c++) {
       copy_depths(g, c, k, second, 1);
@@ -333,7 +333,7 @@ static sd_status back(sd_grid *g)
       back_along_y(g, c, k, first);
       copy_depths(g, c, k, second, 0);
     }
-  const sd_status status = g->columns > 1 ? exchange(g, 1, ROW_FROM, ROW_TO) : SD_OK;
+  const sd_status status = g->columns > 1 ? grid_exchange(g, 1, ROW_FROM, ROW_TO) : SD_OK;
   for (int k = x[0]; k < x[1] && status == SD_OK; k++) {
     for (int c = 0; c < 3; c++) {
       if (g->columns == 1)
@@ -352,25 +352,25 @@ static sd_status convolve_values(sd_grid *g, sd_grid_fill *fill, void *fill_ctx,
 {
   const int *y = g->own[SD_SHARED_Y];
   sd_status status = forth(g, fill, fill_ctx);
-  if (status == SD_OK) status = exchange(g, 0, COLUMN_TO, COLUMN_FROM);
+  if (status == SD_OK) status = grid_exchange(g, 0, COLUMN_TO, COLUMN_FROM);
   for (int k = y[0]; k < y[1] && status == SD_OK; k++)
     through_plane(g, k, multiply, ctx, (real *) g->message[1]);
-  if (status == SD_OK) status = exchange(g, 1, COLUMN_FROM, COLUMN_TO);
+  if (status == SD_OK) status = grid_exchange(g, 1, COLUMN_FROM, COLUMN_TO);
   if (status == SD_OK) status = back(g);
-  if (status == SD_OK) status = exchange(g, 1, PIECES_FROM, PIECES_TO);
+  if (status == SD_OK) status = grid_exchange(g, 1, PIECES_FROM, PIECES_TO);
   if (status == SD_OK) copy_pieces(g, (real *) g->message[0], 1);
   return status;
 }
 
-static sd_status convolve(sd_grid *g, sd_grid_multiply *multiply, void *ctx)
+static sd_status grid_convolve(sd_grid *g, sd_grid_multiply *multiply, void *ctx)
 {
   copy_pieces(g, (real *) g->message[0], 0);
-  const sd_status status = exchange(g, 0, PIECES_TO, PIECES_FROM);
+  const sd_status status = grid_exchange(g, 0, PIECES_TO, PIECES_FROM);
   return status == SD_OK ? convolve_values(g, NULL, NULL, multiply, ctx) : status;
 }
 
 #ifdef SD_SINGLE
-const struct sd_grid_fields sd_grid_floats = {plan, forget, convolve, convolve_values};
+const struct sd_grid_fields sd_grid_floats = {plan, forget, grid_convolve, convolve_values};
 #else
-const struct sd_grid_fields sd_grid_doubles = {plan, forget, convolve, convolve_values};
+const struct sd_grid_fields sd_grid_doubles = {plan, forget, grid_convolve, convolve_values};
 #endif

@@ -75,7 +75,7 @@ static int list_near(sd_ewald_image_pairs *p, int n, int n_all)
 }
 
 /* Centres are read in whole vectors beyond the last. */
-static int fill_rows(sd_ewald_image_pairs *p)
+static int image_fill_rows(sd_ewald_image_pairs *p)
 {
   const size_t rows = (size_t) p->part.rows + 1;
   p->row = sd_reserve_lines(&p->memory, 12 * rows + FULL, &p->room);
@@ -186,7 +186,7 @@ sd_status sd_ewald_image_pairs_place(sd_ewald_image_pairs *p, const sd_wall *wal
 {
   p->wall = *wall;
   p->spheres = *s;
-  return list_near(p, n, n_all) && fill_rows(p) && ip_find_pairs(p) ? SD_OK : SD_ENOMEMORY;
+  return list_near(p, n, n_all) && image_fill_rows(p) && ip_find_pairs(p) ? SD_OK : SD_ENOMEMORY;
 }
 
 /* --- product --- */

@@ -6,7 +6,7 @@
 #include "sd_window.h"
 
 /* I, J of G = I 1 + J R R; (1/R d/dR)^n L, n = 1, 2 */
-static void numbers(const sd_ewald *e, double distance, double *number)
+static void image_numbers(const sd_ewald *e, double distance, double *number)
 {
   const sd_filter filter = {e->images.xi, e->a_ref};
   const sd_filtered f = sd_filtered_at(&filter, distance * distance, 3, 0);
@@ -46,7 +46,7 @@ sd_status sd_image_kernel(const sd_ewald *e, const int *size, const int *y, cons
       .ewald = e,
       .xi = e->images.xi,
       .kernels = SD_IMAGE_KERNELS,
-      .numbers = numbers,
+      .numbers = image_numbers,
       .value = value,
       .odd = odd,
       .across = 1,

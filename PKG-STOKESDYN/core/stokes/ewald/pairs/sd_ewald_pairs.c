@@ -92,7 +92,7 @@ static void put_place(const sd_ewald_pairs *p, long row, const double *x)
   }
 }
 
-static void fill_rows(sd_ewald_pairs *p)
+static void pairs_fill_rows(sd_ewald_pairs *p)
 {
   double largest = 0.0, *centre = centres_of(p);
   for (int k = 0; k < p->rows; k++) largest = fmax(largest, p->spheres.a[p->sphere[k]]);
@@ -159,7 +159,7 @@ sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, const sd_
   if (!ep_make_room(p, n_all)) return SD_ENOMEMORY;
   const sd_status status = grouped ? sd_ewald_groups_sort(p, groups, n) : sort_spheres(p, n, n_all);
   if (status != SD_OK) return status;
-  fill_rows(p);
+  pairs_fill_rows(p);
   p->groups.own = 0;
   if (grouped) return sd_ewald_groups_find(p, groups, n);
   finder f = {p, n, 0};
