@@ -25,7 +25,8 @@ using namespace StokesDyn;
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
     RowsFix(lmp, narg, arg), adapt(), noise(voice), spin(voice), directions(lmp), torques(voice),
-    squirmers(voice, directions), motion(3), random(6), load(6), before(9), output(OUTPUTS)
+    squirmers(voice, directions), motion(3), random(6), load(6),
+    steps(lmp, held, pinned, directions, output, TURNED), before(9), output(OUTPUTS)
 {
   Keywords in = keywords(narg, arg);
   in.elsewhere("visc fluid_velocity rotation multiblob lubrication rigid_clumps wall cut_off_distance",
@@ -107,7 +108,7 @@ void FixStokesDynamicsOverdamped::find_groups()
     if (held.bit) moved_bits |= fix->groupbit;
   if (!pinned.bit) return;
   if (const tagint both = first_atom(lmp, [this](int i) {
-        return is_held(i) && (atom->mask[i] & pinned.bit);
+        return steps.is_held(i) && (atom->mask[i] & pinned.bit);
       }))
     voice.fail("keyword pin: atom " + std::to_string(both) + " is in the group of keyword held as well: "
                "it must be in one of them only");
@@ -135,7 +136,7 @@ void FixStokesDynamicsOverdamped::look_at_neighbours()
                          fact(RESTING, hydro.ambient.settings.rests()),
                      [this](int i) {
                        if (!(atom->mask[i] & groupbit)) return 0u;
-                       return (unsigned) (is_held(i) ? HELD : FREE);
+                       return (unsigned) (steps.is_held(i) ? HELD : FREE);
                      }, this);
 }
 
@@ -169,7 +170,7 @@ void FixStokesDynamicsOverdamped::after_setup()
   hydro.new_run(same_run);
   if (same_run && from_file && adapt.every && last.next_dt > 0.0) set_step(last.next_dt);
   from_file = false;
-  displaced = 0.0;
+  steps.rest();
   growth = {};
   find_velocities(hydro);
   if (!announced) announce();
@@ -209,19 +210,11 @@ sd_body_known FixStokesDynamicsOverdamped::given_velocity(int i, double *V) cons
 {
   std::fill_n(V, 6, 0.0);
   if (atom->mask[i] & pinned.bit) return SD_BODY_PINNED;
-  if (!is_held(i)) return spin.turns(i, V + 3) ? SD_BODY_SPUN : SD_BODY_FREE;
+  if (!steps.is_held(i)) return spin.turns(i, V + 3) ? SD_BODY_SPUN : SD_BODY_FREE;
   if (!is_moved(i)) return SD_BODY_HELD;
   std::copy_n(dragged.empty() ? atom->v[i] : &dragged[3 * (size_t) i], 3, V);
   if (atom->omega_flag) std::copy_n(atom->omega[i], 3, V + 3);
   return SD_BODY_HELD;
-}
-
-/* In two dimensions nobody leaves the plane, or turns but about its normal. V: velocity, with width 6
- * angular velocity; or a move. */
-void FixStokesDynamicsOverdamped::keep_in_plane(double *V, size_t width) const
-{
-  if (domain->dimension == 3) return;
-  for (size_t d = 2; d < std::min(width, (size_t) 5); d++) V[d] = 0.0;
 }
 
 void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
@@ -239,7 +232,7 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
     const double *fluid = hydro.ambient.velocity(i);
     double *row = output.give(i), V[6];
     width == 6 ? copy<6>(v, V) : copy<3>(v, V);
-    keep_in_plane(V, width);
+    steps.keep_in_plane(V, width);
     for (size_t d = 0; d < 3; d++) {
       atom->v[i][d] = V[d];
       row[d] = V[d] - fluid[d];
@@ -355,7 +348,7 @@ void FixStokesDynamicsOverdamped::advance()
 {
   Hydrodynamics &hydro = hydrodynamics();
   hydro.check_prepared();
-  displaced = 0.0;
+  steps.rest();
   if (scheme != MIDPOINT && !warned_growth) watch();
   if (scheme == MIDPOINT) {
     if (noise.on())
@@ -364,7 +357,7 @@ void FixStokesDynamicsOverdamped::advance()
       move_by_midpoint(hydro);
   } else {
     bring_box_to_this_step(lmp);    // first: spheres of a clump may be images across faces that move
-    for (int i : hydro.motion().lone()) move_free(hydro, i);
+    for (int i : hydro.poses().lone()) move_free(hydro, i);
     if (hydro.settings.rigid.on) move_clumps(hydro);
   }
   last.dt = update->dt;

@@ -8,6 +8,7 @@
 #ifndef SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 #define SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 
+#include "body_steps.h"
 #include "deforming_box.h"
 #include "directions.h"
 #include "hydrodynamics.h"
@@ -78,6 +79,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
    * moves */
   KeywordGroup held, pinned;
   int moved_bits = 0;
+  BodySteps steps;
   /* scheme midpoint, of those that fix move moves, in its solve in the middle of a step: [3 nlocal] their
    * velocity in this step; else empty */
   std::vector<double> dragged;
@@ -101,9 +103,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   } last;
   bool from_file = false;
 
-  /* in the last step, of this rank: the square of the largest displacement over radius;
-   * change_of_velocities() */
-  double displaced = 0.0, velocity_change = 0.0;
+  /* change_of_velocities() in the last step, of this rank */
+  double velocity_change = 0.0;
   sd_growth growth = {};    // of error_figure() of all
   bool warned_growth = false, announced = false;
 
@@ -128,71 +129,28 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void find_groups();
   void find_drives(const Hydrodynamics &);
   bool any_given() const { return held.bit || pinned.bit || spin.on(); }
-  bool is_held(int i) const { return atom->mask[i] & held.bit; }
-  /* in its place, or as told */
-  bool stays(int i) const { return atom->mask[i] & (held.bit | pinned.bit); }
-  bool is_moved(int i) const { return is_held(i) && (atom->mask[i] & moved_bits); }
+  bool is_moved(int i) const { return steps.is_held(i) && (atom->mask[i] & moved_bits); }
   sd_body_known given_velocity(int i, double *V) const;
   void load_on(int i, double *FT) const;
   bool in_clump(const Hydrodynamics &, int i) const;
-  void keep_in_plane(double *V, size_t width) const;
   double weight(bool has) const;
   void advance();
   void at_image(const Hydrodynamics &, const double *row, const double *place, double *old) const;
-  void moves(int i, const double *step);
   void move_free(const Hydrodynamics &, int i);
   void move_clumps(Hydrodynamics &);
   void refuse_midpoint(const Hydrodynamics &) const;
   void push_on(int i, double *FT) const;
   Given given() const;
-  /* Clumps at the start of a step, their spheres x [3 members] side by side, each so many edges h [6] of the
-   * box away from its atom: all as in WholeClumps, where they stand now; or kept, to go from there later */
-  struct Clumps {
-    const std::vector<ClumpPoses::Clump> &all;
-    const std::vector<double> &x;
-    const std::vector<int> &steps;
-    const double *h;
-  };
-  struct KeptClumps {
-    std::vector<ClumpPoses::Clump> all;
-    std::vector<double> x;
-    std::vector<int> steps;
-    double h[6];
-    Clumps clumps() const { return {all, x, steps, h}; }
-  };
-  static Clumps clumps_now(const Hydrodynamics &);
-  /* A displacement and a turn, move [6], of a point at centre [3] in the axes of the shape; place [3]:
-   * where the centroid is put, for whoever wants that, else nullptr */
-  struct ClumpStep {
-    const double *centre;
-    double move[6], *place;
-  };
-  using Step = std::function<ClumpStep(size_t c)>;
-  /* rows of their atoms: by how much each moves and turns, and the quaternion by which its clump has
-   * turned in all when this is a whole step */
-  enum { STEP, TURN = STEP + 3, TURNED_NOW = TURN + 9, COLUMNS = TURNED_NOW + 4 };
-  void step_clumps(Hydrodynamics &, const Clumps &start, const Step &step,
-                   const std::function<void(int i, const double *row)> &take);
-  void clump_moves(Hydrodynamics &, int i, const double *row);
 
   // --- scheme midpoint (fix_stokes_dynamics_overdamped_midpoint.cpp)
 
-  /* A step where it begins: who takes part, and who of them are no clumps; places, directions, the box. And
-   * its middle, of which velocities are: places, the box */
+  /* The middle of a step, of which velocities are: places, the box */
   struct {
-    std::vector<int> who, lone;
-    Places x, there;
-    KeptClumps clumps;
-    std::vector<double> mu;
-    sd_box box, middle;
-  } start;
-  void begin_step(const Hydrodynamics &);
-  void stand_at_start();
-  Places places_now(const Hydrodynamics &) const;
+    Places places;
+    sd_box box;
+  } middle;
   Moves found(const Hydrodynamics &) const;
   Ride half_step(const BoxMotion &flow, bool carried) const;
-  using Taken = std::function<void(int i, const double *row)>;
-  void place(Hydrodynamics &, const Ride &ride, const Places &there, const Moves &V, const Taken &take);
   void begin_midpoint(Hydrodynamics &, const Solve::Take &take);
   void move_by_midpoint(Hydrodynamics &);
   void make_step(Hydrodynamics &, const Moves &V);
@@ -203,6 +161,9 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   std::vector<double> moments_of_noise;
   LAMMPS_NS::bigint moments_step = -1;
   void find_noisy_velocities(Hydrodynamics &, const Solve::Take &take);
+
+  // --- what is told of a step
+
   void watch();
   double fastest() const;
   double change_of_velocities() const;

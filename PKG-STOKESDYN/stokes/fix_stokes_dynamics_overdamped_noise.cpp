@@ -24,7 +24,7 @@ void FixStokesDynamicsOverdamped::find_noisy_velocities(Hydrodynamics &hydro, co
   const BoxMotion flow = hydro.ambient.box_motion();
   const bool carried = hydro.ambient.jumps();
   const auto at = [&](const Ride &ride, const Moves &V, Hydrodynamics::Moment moment) {
-    place(hydro, ride, start.x, V, [](int, const double *) {});
+    steps.go(hydro, ride, steps.start().x, V, BodySteps::PART);
     hydro.begin(moment);
   };
   hydro.draw(known, draw);
@@ -32,7 +32,7 @@ void FixStokesDynamicsOverdamped::find_noisy_velocities(Hydrodynamics &hydro, co
     hydro.stress_of_noise(noise.tolerance_of_solve(), moments_of_noise);
     moments_step = update->ntimestep;
   }
-  begin_step(hydro);
+  steps.begin(hydro);
   const Moves of_points = hydro.half_step_of_points(), of_films = hydro.half_step_of_films();
   if (hydro.needs_differences()) {
     const Moves wander = hydro.wander(draw);
@@ -47,10 +47,9 @@ void FixStokesDynamicsOverdamped::find_noisy_velocities(Hydrodynamics &hydro, co
   hydro.films(known);
   at(half, of_points, Hydrodynamics::HALF_LATER);
   hydro.velocities(take, known, noise.tolerance_of_solve());
-  start.middle = half.to;
-  start.there = places_now(hydro);
-  if (flow.deforms) put_box(domain, start.box);
-  stand_at_start();
+  middle = {steps.places(hydro), half.to};
+  if (flow.deforms) put_box(domain, steps.start().box);
+  steps.back();
 }
 
 const std::vector<double> *FixStokesDynamicsOverdamped::stress_of_noise() const

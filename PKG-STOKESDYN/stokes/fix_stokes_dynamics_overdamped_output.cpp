@@ -34,7 +34,7 @@ double FixStokesDynamicsOverdamped::compute_vector(int k)
   if (!memory) return 0.0;
   const std::function<double()> values[] = {[&] { return fastest(); },
                                             [&] { return largest_of_all(world, error_figure()); },
-                                            [&] { return sqrt(largest_of_all(world, displaced)); },
+                                            [&] { return sqrt(largest_of_all(world, steps.farthest())); },
                                             [&] { return memory->global.iterations; },
                                             [&] { return memory->global.residual; },
                                             [&] { return memory->global.solves; },
@@ -74,17 +74,17 @@ double FixStokesDynamicsOverdamped::fastest() const
 double FixStokesDynamicsOverdamped::change_of_velocities() const
 {
   const Hydrodynamics &hydro = hydrodynamics();
-  const ClumpPoses &moving = hydro.motion();
+  const ClumpPoses &poses = hydro.poses();
   double most = 0.0, old[6];    // a square
-  for (int i : moving.lone()) {
+  for (int i : poses.lone()) {
     if (!before.has(i)) continue;
     at_image(hydro, before[i], atom->x[i], old);
     for (int d = 0; d < 3; d++) old[d] -= motion[i][d];
     most = std::max(most, sd_dot(old, old) / (atom->radius[i] * atom->radius[i]));
   }
-  for (const ClumpPoses::Clump &clump : moving.clumps()) {
-    const ClumpShape &is = moving.shape(clump);
-    const int first = moving.body(clump).atom;
+  for (const ClumpPoses::Clump &clump : poses.clumps()) {
+    const ClumpShape &is = poses.shape(clump);
+    const int first = poses.body(clump).atom;
     double now_V[6], from[3], arm[3], change[3];
     if (!before.has(first)) continue;
     tracked_velocity(clump, is, now_V);
@@ -141,10 +141,10 @@ double FixStokesDynamicsOverdamped::smallest_gap() const
 
 double FixStokesDynamicsOverdamped::ideal_pressure() const
 {
-  const ClumpPoses &motion = hydrodynamics().motion();
+  const ClumpPoses &poses = hydrodynamics().poses();
   double count = 0.0;
-  for (int i : motion.lone()) count += !stays(i);
-  for (const ClumpPoses::Clump &clump : motion.clumps()) count += clump.known == SD_BODY_FREE;
+  for (int i : poses.lone()) count += !steps.stays(i);
+  for (const ClumpPoses::Clump &clump : poses.clumps()) count += clump.known == SD_BODY_FREE;
   return noise.on() ? count * noise.energy() : 0.0;
 }
 

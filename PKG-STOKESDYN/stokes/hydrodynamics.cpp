@@ -27,7 +27,7 @@ Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
     scene(voice, epochs, settings.scene), shells(voice, settings.shells),
     rigid(voice, scene.whole, epochs, settings.rigid),
     lubrication(voice, settings.lubrication, settings.shells),
-    poses(lmp, scene, ambient, rigid, given), bodies(lmp, scene, ambient, rigid, poses, given),
+    clump_poses(lmp, scene, ambient, rigid, given), bodies(lmp, scene, ambient, rigid, clump_poses, given),
     guess(lmp, scene, shells, settings, epochs),
     solver(lmp, scene, bodies, lubrication, ambient), guard(voice)
 {
@@ -137,7 +137,7 @@ void Hydrodynamics::clumps()
 {
   if (!settings.rigid.apart()) {
     solvers = ambient.who();
-    if (settings.rigid.on) poses.find();    // are they whole and rigid?
+    if (settings.rigid.on) clump_poses.find();    // are they whole and rigid?
     return;
   }
   const bool wants_perturbation = reported || settings.rigid.auto_resolve;
@@ -151,8 +151,8 @@ void Hydrodynamics::clumps()
       row[State::at(State::VPRIME, d)] = F[d] / ambient.resistance(i, d) - s[d];
   };
   std::vector<char> left_over;
-  poses.find();
-  poses.drag(take, left_over);
+  clump_poses.find();
+  clump_poses.drag(take, left_over);
   memory->global.loose = rigid.loose();
   solvers.clear();
   for (int i : ambient.who())
@@ -200,8 +200,8 @@ void Hydrodynamics::velocities(const Solve::Take &take, const Given &known, doub
   solvers = ambient.who();
   given = known;
   if (settings.rigid.apart()) {
-    poses.find();
-    poses.velocities(width(), take);
+    clump_poses.find();
+    clump_poses.velocities(width(), take);
     for (int i : solvers)
       memory->rows.give(i);    // those that have one are known to have moved here
   } else
@@ -301,7 +301,7 @@ sd_status Hydrodynamics::find_motions(const Solve::Take &take, double drawn, sd_
   const bool warm = guess.recall(bodies, given) && drawn == 0.0;
   const sd_status status =
       solver.run({warm, std::max(settings.tolerance, drawn), settings.max_iter}, guess, report);
-  poses.moves(&solver.V[6 * bodies.first_clump()]);
+  clump_poses.moves(&solver.V[6 * bodies.first_clump()]);
   solver.hand_out(take);
   films_power.clear();
   if (settings.lubrication.on && status == SD_OK) {
@@ -409,7 +409,7 @@ double Hydrodynamics::memory_usage() const
 {
   const double films = films_v.capacity() + films_F.capacity() + films_power.capacity();
   return ambient.memory_usage() + scene.memory_usage() + shells.memory_usage() +
-      rigid.memory_usage() + lubrication.memory_usage() + poses.memory_usage() +
+      rigid.memory_usage() + lubrication.memory_usage() + clump_poses.memory_usage() +
       bodies.memory_usage() + solver.memory_usage() + sizeof(double) * films;
 }
 

@@ -30,11 +30,10 @@
 namespace StokesDyn {
 
 /* Velocities or displacements of bodies: U and W of free spheres, [6 nlocal], 0 of others; and of the clumps
- * of this rank, [6 clumps]. And places: of atoms [3 nlocal], of centroids [3 clumps] */
+ * of this rank, [6 clumps] */
 struct Moves {
   std::vector<double> atoms, clumps;
 };
-using Places = Moves;
 
 class Hydrodynamics : protected LAMMPS_NS::Pointers {
  public:
@@ -94,7 +93,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void films(const Given &known);
 
   /* Those of rigid clumps, and who is free, since then */
-  const ClumpPoses &motion() const { return poses; }
+  const ClumpPoses &poses() const { return clump_poses; }
   /* The sphere turns with its clump by the rotation matrix R, and so does the force on it, from
    * which the next solve begins. */
   void turn(int i, const double R[9]) { guess.turn(i, R); }
@@ -142,7 +141,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Shells shells;
   RigidClumps rigid;
   Lubrication lubrication;
-  ClumpPoses poses;
+  ClumpPoses clump_poses;
   BodyScene bodies;
   Guess guess;
   Solve solver;

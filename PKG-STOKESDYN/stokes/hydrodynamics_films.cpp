@@ -44,7 +44,7 @@ void Hydrodynamics::stand_rows()
 {
   if (standing()) return;
   solvers = ambient.who();
-  if (settings.rigid.on) poses.find();
+  if (settings.rigid.on) clump_poses.find();
   surround();
 }
 

@@ -22,7 +22,7 @@ namespace StokesDyn {
 /* The bodies where they stand, but for films */
 void Hydrodynamics::assemble()
 {
-  poses.find();
+  clump_poses.find();
   place();
   bodies.place(width());
   bodies.assemble();
@@ -99,7 +99,7 @@ void Hydrodynamics::films(const Given &known)
 {
   if (!settings.lubrication.on) return;
   given = known;
-  poses.find();
+  clump_poses.find();
   scene.stand(solvers, ambient);
   scene.turn_shells();
   bodies.stand_films();

@@ -110,8 +110,8 @@ std::vector<double> Hydrodynamics::on_fluid(std::vector<double> *viscosity)
     if (viscosity) viscosity->push_back(ambient.viscosity(i));
   };
   if (overdamped && settings.rigid.apart()) {    // these are not kept
-    poses.find();
-    poses.velocities(width(), [&](int i, const double *, const double *F) { add(i, F); });
+    clump_poses.find();
+    clump_poses.velocities(width(), [&](int i, const double *, const double *F) { add(i, F); });
     return all;
   }
   for (int i : ambient.who()) {

@@ -53,7 +53,7 @@ void Noise::find_temperature(const Hydrodynamics &hydro)
                std::to_string(update->ntimestep));
   kT = force->boltz * T;
   last = {};
-  of_clumps.assign(6 * hydro.motion().clumps().size() + 6, 0.0);
+  of_clumps.assign(6 * hydro.poses().clumps().size() + 6, 0.0);
 }
 
 void Noise::draw(Hydrodynamics &hydro, size_t width, const Take &take)
@@ -68,7 +68,7 @@ void Noise::draw(Hydrodynamics &hydro, size_t width, const Take &take)
 /* Nobody sees anybody: each sphere by its drag, each clump by the root of its own mobility. */
 void Noise::draw_alone(const Hydrodynamics &hydro, size_t width, const Take &take)
 {
-  const ClumpPoses &motion = hydro.motion();
+  const ClumpPoses &motion = hydro.poses();
   const WholeClumps &whole = hydro.scene.whole;
   double normals[6], move[6];
   for (int i : motion.lone()) {

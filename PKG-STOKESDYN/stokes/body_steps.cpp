@@ -1,0 +1,149 @@
+#include "body_steps.h"
+
+#include "copy.h"
+#include "halo.h"
+
+#include "sd_linear.h"
+#include "sd_pose.h"
+
+#include "atom.h"
+#include "domain.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+void BodySteps::keep_in_plane(double *V, size_t width) const
+{
+  if (domain->dimension == 3) return;
+  for (size_t d = 2; d < std::min(width, (size_t) 5); d++) V[d] = 0.0;
+}
+
+void BodySteps::note(int i, const double *step)
+{
+  displaced = std::max(displaced, sd_dot(step, step) / (atom->radius[i] * atom->radius[i]));
+}
+
+// --- clumps --------------------------------------------------------------------------------------------------
+
+BodySteps::Clumps BodySteps::clumps_now(const Hydrodynamics &hydro)
+{
+  const WholeClumps &whole = hydro.scene.whole;
+  return {hydro.poses().clumps(), whole.x, whole.steps, whole.h};
+}
+
+/* What becomes of the spheres of clump c of this rank. Positions are those of images side by side: an atom moves
+ * as its image does, less what the edges of the box between them have moved since, box [6]. x [3 spheres]: room */
+template <class Give>
+void BodySteps::step_clump(const ClumpPoses &poses, const Clumps &from, size_t c, const ClumpStep &goes,
+                           const double *box, std::vector<double> &x, const Give &give) const
+{
+  const ClumpPoses::Clump &clump = poses.clumps()[c];
+  const RigidClumps::Body &body = poses.body(clump);
+  double row[COLUMNS], pose[12];
+  copy<12>(from.all[c].pose, pose);
+  x.resize(3 * (size_t) body.n);
+  sd_pose_step(pose, goes.centre, goes.move, body.n, body.shape->shape.x, row + TURN, x.data());
+  if (goes.place) copy<3>(pose + 9, goes.place);
+  copy<4>(rows[body.atom] + quaternion, row + TURNED);
+  sd_turn_quaternion(row + TURN, row + TURNED);
+  for (int k = 0; k < body.n; k++) {
+    const size_t m = poses.member_of(clump, k);
+    sd_minus(&x[3 * (size_t) k], &from.x[3 * m], row + STEP);
+    sd_add_edges(box, &from.steps[3 * m], row + STEP);
+    give(m, row);
+  }
+}
+
+void BodySteps::step_clumps(Hydrodynamics &hydro, const Clumps &from, const Step &step, Extent extent)
+{
+  const Lattice now = Lattice::of(domain);
+  std::vector<double> x;
+  double box[6];
+  for (int d = 0; d < 6; d++) box[d] = from.h[d] - now.h[d];
+  const auto all = [&](const auto &give) {
+    for (size_t c = 0; c < from.all.size(); c++)
+      if (from.all[c].known != SD_BODY_HELD)
+        step_clump(hydro.poses(), from, c, step(c), box, x, give);
+  };
+  hydro.scene.whole.scatter(COLUMNS, all, [&](int i, const double *row) {
+    for (int d = 0; d < domain->dimension; d++) atom->x[i][d] += row[STEP + d];
+    directions.turn(i, row + TURN);
+    if (extent == PART) return;
+    note(i, row + STEP);
+    hydro.turn(i, row + TURN);
+    copy<4>(row + TURNED, rows.give(i) + quaternion);
+  });
+}
+
+// --- from where they stand -----------------------------------------------------------------------------------
+
+void BodySteps::go(int i, const double step[3])
+{
+  for (int d = 0; d < 3; d++) atom->x[i][d] += step[d];
+  note(i, step);
+}
+
+void BodySteps::go(Hydrodynamics &hydro, const Step &of_clump)
+{
+  step_clumps(hydro, clumps_now(hydro), of_clump, WHOLE);
+}
+
+// --- from where they stood -----------------------------------------------------------------------------------
+
+Places BodySteps::places(const Hydrodynamics &hydro) const
+{
+  Places x;
+  x.atoms.assign(3 * (size_t) atom->nlocal + 3, 0.0);
+  for (int i : hydro.ambient.who()) std::copy_n(atom->x[i], 3, &x.atoms[3 * (size_t) i]);
+  for (const ClumpPoses::Clump &clump : hydro.poses().clumps())
+    x.clumps.insert(x.clumps.end(), clump.pose + 9, clump.pose + 12);
+  return x;
+}
+
+void BodySteps::begin(const Hydrodynamics &hydro)
+{
+  began = {hydro.ambient.who(), hydro.poses().lone(), places(hydro), box_of(domain)};
+  const Clumps now = clumps_now(hydro);
+  kept = {now.all, now.x, now.steps, {}};
+  std::copy_n(now.h, 6, kept.h);
+  mu = directions.all();
+}
+
+void BodySteps::back()
+{
+  for (int i : began.who) std::copy_n(&began.x.atoms[3 * (size_t) i], 3, atom->x[i]);
+  directions.restore(mu);
+}
+
+void BodySteps::go(Hydrodynamics &hydro, const Ride &ride, const Places &there, const Moves &V, Extent extent)
+{
+  static const double CENTROID[3] = {0.0, 0.0, 0.0};
+  const auto moved = [&](bool stays, const double *v, const double *at, const double *from, double move[6]) {
+    for (int d = 0; d < 6; d++) move[d] = ride.t * v[d];
+    if (!stays) ride.step(v, at, from, move);
+    keep_in_plane(move, 6);
+  };
+  back();
+  for (size_t i : began.lone) {
+    const double *v = &V.atoms[6 * i], beyond_box[3] = {ride.t * v[0], ride.t * v[1], ride.t * v[2]};
+    double move[6];
+    moved(stays((int) i), v, &there.atoms[3 * i], &began.x.atoms[3 * i], move);
+    for (size_t d = 0; d < 3; d++) atom->x[i][d] += move[d];
+    if (is_held((int) i)) continue;
+    directions.turn((int) i, move + 3, 1.0);
+    if (extent == WHOLE) note((int) i, beyond_box);
+  }
+  if (!hydro.settings.rigid.on) return;
+  const auto step = [&](size_t c) {
+    const ClumpPoses::Clump &clump = kept.all[c];
+    ClumpStep s = {CENTROID, {}, nullptr};
+    moved(clump.known == SD_BODY_PINNED, &V.clumps[6 * c], &there.clumps[3 * c], clump.pose + 9, s.move);
+    return s;
+  };
+  step_clumps(hydro, kept.clumps(), step, extent);
+}
+
+}    // namespace StokesDyn

@@ -1,0 +1,112 @@
+/* How bodies go in a step of fix stokes_dynamics/overdamped: lone spheres, and rigid clumps with all their
+ * spheres, from where they stand, or stood when the step began. Directions turn with them. The rank that owns
+ * a clump moves it, and its spheres wherever they are (whole_clumps.h). */
+#ifndef SD_BODY_STEPS_H
+#define SD_BODY_STEPS_H
+
+#include "deforming_box.h"
+#include "directions.h"
+#include "hydrodynamics.h"
+#include "keyword_group.h"
+#include "rows_fix.h"
+
+#include <functional>
+#include <vector>
+
+namespace StokesDyn {
+
+/* Of atoms, [3 nlocal], and of the centroids of the clumps of this rank, [3 clumps] */
+struct Places {
+  std::vector<double> atoms, clumps;
+};
+
+class BodySteps : protected LAMMPS_NS::Pointers {
+ public:
+  /* held: do not go; pinned: turn only. Columns from `quaternion` on of `rows`: by which the clump of a sphere
+   * has turned since the fix was given */
+  BodySteps(LAMMPS_NS::LAMMPS *lmp, const KeywordGroup &held, const KeywordGroup &pinned,
+            Directions &directions, AtomArray &rows, int quaternion) :
+      Pointers(lmp), held(held), pinned(pinned), directions(directions), rows(rows), quaternion(quaternion)
+  {
+  }
+
+  bool is_held(int i) const { return atom->mask[i] & held.bit; }
+  /* in its place, or as told */
+  bool stays(int i) const { return atom->mask[i] & (held.bit | pinned.bit); }
+  /* In two dimensions nobody leaves the plane, or turns but about its normal. V: velocity, with width 6
+   * angular velocity; or a move. */
+  void keep_in_plane(double *V, size_t width) const;
+
+  // --- from where they stand
+
+  /* A sphere that is in no clump */
+  void go(int i, const double step[3]);
+  /* A displacement and a turn, move [6], of a point at centre [3] in the axes of the shape; place [3]:
+   * where the centroid is put, for whoever wants that, else nullptr */
+  struct ClumpStep {
+    const double *centre;
+    double move[6], *place;
+  };
+  using Step = std::function<ClumpStep(size_t c)>;
+  void go(Hydrodynamics &, const Step &of_clump);
+
+  // --- from where they stood when the step began; nobody migrates in between
+
+  /* Who takes part, and who of them are in no clump; places, directions, the box */
+  struct Start {
+    std::vector<int> who, lone;
+    Places x;
+    sd_box box;
+  };
+  void begin(const Hydrodynamics &);
+  const Start &start() const { return began; }
+  Places places(const Hydrodynamics &) const;
+  /* All but those of fix move stand there again. */
+  void back();
+  /* By velocities V that are those of the places `there` */
+  enum Extent { PART, WHOLE };
+  void go(Hydrodynamics &, const Ride &ride, const Places &there, const Moves &V, Extent extent);
+
+  /* In whole steps since rest(): the square of the largest displacement over radius, of this rank */
+  double farthest() const { return displaced; }
+  void rest() { displaced = 0.0; }
+
+ private:
+  const KeywordGroup &held, &pinned;
+  Directions &directions;
+  AtomArray &rows;
+  const int quaternion;
+  double displaced = 0.0;
+
+  Start began;
+  std::vector<double> mu;
+  /* Clumps, their spheres x [3 members] side by side, each so many edges h [6] of the box away from its
+   * atom: all as in WholeClumps, where they stand now; or kept, to go from there later */
+  struct Clumps {
+    const std::vector<ClumpPoses::Clump> &all;
+    const std::vector<double> &x;
+    const std::vector<int> &steps;
+    const double *h;
+  };
+  struct KeptClumps {
+    std::vector<ClumpPoses::Clump> all;
+    std::vector<double> x;
+    std::vector<int> steps;
+    double h[6];
+    Clumps clumps() const { return {all, x, steps, h}; }
+  } kept;
+
+  /* what an owner sends to a member: by how much it moves and turns, and the quaternion of its clump when
+   * this is a whole step */
+  enum { STEP, TURN = STEP + 3, TURNED = TURN + 9, COLUMNS = TURNED + 4 };
+
+  static Clumps clumps_now(const Hydrodynamics &);
+  template <class Give>
+  void step_clump(const ClumpPoses &, const Clumps &from, size_t c, const ClumpStep &goes, const double *box,
+                  std::vector<double> &x, const Give &give) const;
+  void step_clumps(Hydrodynamics &, const Clumps &from, const Step &step, Extent extent);
+  void note(int i, const double *step);
+};
+
+}    // namespace StokesDyn
+#endif

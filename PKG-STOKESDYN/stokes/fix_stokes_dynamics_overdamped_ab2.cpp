@@ -1,0 +1,87 @@
+/* Of fix stokes_dynamics/overdamped: the step of schemes ab2 and euler,
+ *
+ *   x <- x + dt [V + dt/(2 dt_old) (V - V_old)] + sqrt(2 kT dt) y              euler: V_old = V
+ *
+ * likewise the turns of clumps, about their centre of mobility where there is noise. */
+#include "fix_stokes_dynamics_overdamped.h"
+
+#include "copy.h"
+
+#include "sd_linear.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "update.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace StokesDyn;
+
+/* old [6] of the step before (a row of `before`) for a body whose place is now another image */
+void FixStokesDynamicsOverdamped::at_image(const Hydrodynamics &hydro, const double *row,
+                                           const double *place, double *old) const
+{
+  double shift[3], jump[3];
+  for (int d = 0; d < 3; d++) shift[d] = place[d] - row[6 + d];
+  sd_multiply3(hydro.ambient.box_motion().gradient, shift, jump);
+  std::copy_n(row, 6, old);
+  for (int d = 0; d < 3; d++) old[d] += jump[d];
+}
+
+void FixStokesDynamicsOverdamped::move_free(const Hydrodynamics &hydro, int i)
+{
+  if (steps.is_held(i)) return;
+  const double dt = update->dt, *V = motion[i];
+  const double scale = noise.on() ? noise.scale(dt) : 0.0;
+  double old[6] = {V[0], V[1], V[2]}, mean[3], step[3];
+  if (before.has(i)) at_image(hydro, before[i], atom->x[i], old);
+  sd_mean_velocity(3, V, old, weight(before.has(i)), mean);
+  for (int d = 0; d < 3; d++) step[d] = dt * mean[d] + (noise.on() ? scale * random[i][d] : 0.0);
+  steps.go(i, step);
+  directions.step(i, dt, weight(before.has(i)), scale, random[i] + 3);
+  double *row = before.give(i);
+  copy<3>(V, row);
+  copy<3>(atom->x[i], row + 6);
+}
+
+/* The point by which a clump is moved, from its centroid in the axes of its shape: with noise the centre
+ * of mobility, where there is no drift. */
+const double *FixStokesDynamicsOverdamped::tracked(const ClumpShape &shape) const
+{
+  static const double CENTROID[3] = {0.0, 0.0, 0.0};
+  return noise.on() ? shape.noise.centre : CENTROID;
+}
+
+/* V [6] of that point and W */
+void FixStokesDynamicsOverdamped::tracked_velocity(const ClumpPoses::Clump &clump,
+                                                   const ClumpShape &shape, double V[6]) const
+{
+  double arm[3], turning[3];
+  sd_multiply3(clump.pose, tracked(shape), arm);
+  sd_cross(clump.V + 3, arm, turning);
+  std::copy_n(clump.V, 6, V);
+  for (int d = 0; d < 3; d++) V[d] += turning[d];
+}
+
+void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
+{
+  const ClumpPoses &poses = hydro.poses();
+  steps.go(hydro, [&](size_t number) {
+    const ClumpPoses::Clump &clump = poses.clumps()[number];
+    const int first = poses.body(clump).atom;
+    const bool has = before.has(first);
+    double V[6], old[6], mean[6], *row = before.give(first);
+    BodySteps::ClumpStep s = {tracked(poses.shape(clump)), {}, row + 6};
+    tracked_velocity(clump, poses.shape(clump), V);
+    at_image(hydro, row, clump.pose + 9, old);
+    copy<6>(V, row);
+    sd_mean_velocity(6, V, old, weight(has), mean);
+    for (int d = 0; d < 6; d++) {
+      s.move[d] = update->dt * mean[d];
+      if (noise.on()) s.move[d] += noise.scale(update->dt) * noise.of_clump(number)[d];
+    }
+    steps.keep_in_plane(s.move, 6);
+    return s;
+  });
+}
