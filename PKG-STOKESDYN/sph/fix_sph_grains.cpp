@@ -316,17 +316,16 @@ void FixSphGrains::displace()
 
 const double *FixSphGrains::mixture(const double *v)
 {
-  const int all = atom->nlocal + atom->nghost;
-  const std::vector<double> u = mean_of(std::vector<double>(v, v + 3 * (size_t) all), 3);
-  std::vector<double> slip(3 * grains.size() + 1), there(3 * points.size() + 1, 0.0);
-  for (size_t k = 0; k < 3 * grains.size(); k++) slip[k] = u[k] - atom->v[grains[k / 3]][k % 3];
+  std::vector<double> of_grains(3 * grains.size() + 1), there(3 * points.size() + 1, 0.0);
+  for (size_t j = 0; j < grains.size(); j++) std::copy_n(atom->v[grains[j]], 3, &of_grains[3 * j]);
   const sd_sph_around list = around();
-  sd_sph_grain_flux(&list, V.data(), volume.data(), weight.data(), wet.data(), slip.data(),
+  sd_sph_grain_flux(&list, V.data(), volume.data(), weight.data(), wet.data(), of_grains.data(),
                     there.data());
   moved = at_atoms(there, 3);
   reverse(moved.data(), 3);
   forward(moved.data(), 3);
-  for (size_t k = 0; k < 3 * (size_t) all; k++) moved[k] += v[k];
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++)
+    for (size_t k = 3 * (size_t) i; k < 3 * (size_t) i + 3; k++) moved[k] += (1.0 - phi[i]) * v[k];
   return moved.data();
 }
 
@@ -339,72 +338,56 @@ void FixSphGrains::divide_rates(const double *order, int columns, bool shifts, d
 
 void FixSphGrains::post_force(int /*vflag*/)
 {
-  std::vector<double> F(3 * grains.size() + 1, 0.0);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (pair->is_particle(i)) shown.give(i)[0] = phi[i];
+  std::vector<double> F(3 * grains.size() + 1, 0.0), D = F;
   stresses(F);
-  std::vector<double> reaction = give_back(F);
-  drags(reaction, F);
-  reaction = give_back(F);
-
+  drags(F, D);
   std::fill_n(total, 3, 0.0);
-  for (int i = 0; i < atom->nlocal; i++) {
-    const bool in_water = pair->is_particle(i);
-    if (!in_water) continue;
-    double *row = shown.give(i);
-    row[0] = phi[i];
-    for (int d = 0; d < 3; d++) {
-      row[1 + d] = reaction[3 * (size_t) i + d];
-      atom->f[i][d] += reaction[3 * (size_t) i + d];
-    }
-  }
   for (size_t j = 0; j < grains.size(); j++)
     for (int d = 0; d < 3; d++) {
-      shown.give(grains[j])[1 + d] = F[3 * j + d];
-      atom->f[grains[j]][d] += F[3 * j + d];
-      total[d] += F[3 * j + d];
+      const double both = F[3 * j + d] + D[3 * j + d];
+      shown.give(grains[j])[1 + d] = both;
+      atom->f[grains[j]][d] += both;
+      total[d] += both;
     }
 }
 
-/* Of the grains of this rank, to their owners [3 nlocal + ghosts]. */
-std::vector<double> FixSphGrains::give_back(const std::vector<double> &F)
-{
-  const sd_sph_around list = around();
-  std::vector<double> mine(3 * points.size() + 1, 0.0);
-  sd_sph_grain_reactions(&list, weight.data(), F.data(), mine.data());
-  std::vector<double> all = at_atoms(mine, 3);
-  reverse(all.data(), 3);
-  return all;
-}
-
-/* The force of SPH per volume of the mixture. */
+/* Of the force of SPH, by volume: water keeps 1 - phi of it. */
 void FixSphGrains::stresses(std::vector<double> &F)
 {
   const double *sph = pair->own_forces();
-  std::vector<double> per_volume(3 * (size_t) (atom->nlocal + atom->nghost) + 1, 0.0);
+  std::vector<double> forces(3 * (size_t) (atom->nlocal + atom->nghost) + 1, 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!pair->is_particle(i)) continue;
-    const double inverse = atom->rho[i] * (1.0 - phi[i]) / atom->rmass[i];
-    for (int d = 0; d < 3; d++) per_volume[3 * (size_t) i + d] = inverse * sph[4 * (size_t) i + d];
+    for (int d = 0; d < 3; d++) {
+      forces[3 * (size_t) i + d] = sph[4 * (size_t) i + d];
+      const double given = phi[i] * sph[4 * (size_t) i + d];
+      shown.give(i)[1 + d] = -given;
+      atom->f[i][d] -= given;
+    }
   }
-  forward(per_volume.data(), 3);
-  const std::vector<double> mean = mean_of(per_volume, 3);
+  forward(forces.data(), 3);
+  std::vector<double> per_volume = at_points(forces, 3), mean(3 * grains.size() + 1);
+  for (size_t k = 0; k < 3 * points.size(); k++) per_volume[k] /= volume[k / 3];
+  const sd_sph_around list = around();
+  sd_sph_grain_vector_means(&list, weight.data(), per_volume.data(), mean.data());
   sd_sph_grain_stresses((int) grains.size(), mean.data(), wet.data(), V.data(), F.data());
 }
 
-/* The law at the slip of now, and its drag at the velocities of the end of the step, which all
- * forces but drag make: `reaction` of the stresses F. */
-void FixSphGrains::drags(const std::vector<double> &reaction, std::vector<double> &F)
+/* The law at the slip of now, and its drag D at the velocities of the end of the step, which all
+ * forces but drag make: those of atoms, and the stresses F of grains. */
+void FixSphGrains::drags(const std::vector<double> &F, std::vector<double> &D)
 {
   const int nlocal = atom->nlocal, n = (int) grains.size();
   const double dt = update->dt;    // at a setup as well: that force begins the first step
   const size_t all = nlocal + atom->nghost;
   std::vector<double> now(3 * all + 1, 0.0), next(now), total_drag(points.size() + 1, 0.0),
-      v(3 * grains.size() + 1), v_next(v), k(grains.size() + 1), at_grains(grains.size() + 1),
-      D(3 * grains.size() + 1);
+      v(3 * grains.size() + 1), v_next(v), k(grains.size() + 1), at_grains(grains.size() + 1);
   for (int i = 0; i < nlocal; i++)
     if (pair->is_particle(i))
       for (int d = 0; d < 3; d++)
-        next[3 * (size_t) i + d] =
-            atom->v[i][d] + dt * (atom->f[i][d] + reaction[3 * (size_t) i + d]) / atom->rmass[i];
+        next[3 * (size_t) i + d] = atom->v[i][d] + dt * atom->f[i][d] / atom->rmass[i];
   forward(next.data(), 3);
   for (size_t i = 0; i < all; i++) std::copy_n(atom->v[i], 3, &now[3 * i]);
   for (int j = 0; j < n; j++)
@@ -430,7 +413,24 @@ void FixSphGrains::drags(const std::vector<double> &reaction, std::vector<double
   const std::vector<double> slowed_points = at_points(slowed, 1);
   sd_sph_grain_drags(&list, dt, weight.data(), u_next.data(), v_next.data(), M.data(), k.data(),
                      slowed_points.data(), D.data());
-  for (size_t k3 = 0; k3 < 3 * grains.size(); k3++) F[k3] += D[k3];
+  give_back(D);
+}
+
+/* Drag on grains slows the water of all ranks. */
+void FixSphGrains::give_back(const std::vector<double> &D)
+{
+  const sd_sph_around list = around();
+  std::vector<double> mine(3 * points.size() + 1, 0.0);
+  sd_sph_grain_reactions(&list, weight.data(), D.data(), mine.data());
+  std::vector<double> all = at_atoms(mine, 3);
+  reverse(all.data(), 3);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!pair->is_particle(i)) continue;
+    for (int d = 0; d < 3; d++) {
+      shown.give(i)[1 + d] += all[3 * (size_t) i + d];
+      atom->f[i][d] += all[3 * (size_t) i + d];
+    }
+  }
 }
 
 // --- rows of atoms, of points and of grains ------------------------------------------------------

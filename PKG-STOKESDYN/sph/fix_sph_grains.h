@@ -77,9 +77,9 @@ class FixSphGrains : public SphFix {
   std::vector<double> at_points(const std::vector<double> &of_atoms, int columns) const;
   std::vector<double> at_atoms(const std::vector<double> &of_points, int columns) const;
   std::vector<double> mean_of(const std::vector<double> &of_atoms, int columns) const;
-  std::vector<double> give_back(const std::vector<double> &F);
   void stresses(std::vector<double> &F);
-  void drags(const std::vector<double> &reaction, std::vector<double> &F);
+  void drags(const std::vector<double> &F, std::vector<double> &D);
+  void give_back(const std::vector<double> &D);
 
   // communication of one array at a time
   double *comm_array = nullptr;

@@ -131,14 +131,14 @@ void sd_sph_grain_fractions(const sd_sph_around *list, const double *V, const do
 }
 
 void sd_sph_grain_flux(const sd_sph_around *list, const double *V, const double *volume,
-                       const double *weight, const double *wet, const double *slip, double *flux)
+                       const double *weight, const double *wet, const double *v, double *flux)
 {
   for (int j = 0; j < list->n; j++)
     for (int p = list->first[j]; p < list->first[j + 1]; p++) {
       if (!(weight[p] > 0.0)) continue;
       const size_t a = list->particle[p];
       const double share = wet[j] * V[j] * weight[p] / volume[a];
-      for (int c = 0; c < 3; c++) flux[3 * a + c] -= share * slip[3 * (size_t) j + c];
+      for (int c = 0; c < 3; c++) flux[3 * a + c] += share * v[3 * (size_t) j + c];
     }
 }
 

@@ -8,16 +8,18 @@
  *   wetness      t_j = min(1, S_j / (1 - Sw_j)), Sw_j the same sum over the particles of walls:
  *                the part of the room around the grain, without walls, that is water
  *   grains       phi_a = sum_j t_j V_j w_aj / V_a: sum_a V_a phi_a = sum_j t_j V_j, none is lost
- *   flux         q_a = v_a - sum_j t_j V_j w_aj/V_a (u_j - v_j), of water and grains together;
+ *   flux         q_a = eps_a v_a + sum_j t_j V_j w_aj/V_a v_j, of water and grains together;
  *                d rho_a/dt = rho_a/eps_a sum_b V_b (q_a - q_b).grad W, since grains do not yield
  *   at a grain   any mean of the water, q_j = sum_a w_aj q_a
  * Force on a grain: the stress of the water, divided by volume between water and grains, and drag
  *   F_j = t_j V_j <F_a / V_a>_j + D_j,      F_a: pressure and friction on a by water and walls
  *   D_j = t_j (1 - phi) F(w),               F of sd_drag.h, w = u_j - v_j
- * and water gets - w_aj F_j: momentum is exact whatever the means are. The work of F_a is then
- * F_a.q_a, in water and grains together, which is what the rate of rho takes up: no sound is made
- * or lost. At rest F_a = - m_a g, which gives Archimedes' buoyancy also at a surface or a wall,
- * where sums over neighbours are not exact. The laws of sd_drag.h are for a force beside the
+ * Water gets eps_a F_a - sum_j w_aj D_j. Momentum is exact, since sum_a phi_a F_a is what grains
+ * get. The work of F_a is then F_a.q_a, in water and grains together, which is what the rate of rho
+ * takes up: no sound is made or lost. The water that stands still between grains that stand still
+ * has the flux eps_a v_a of its own place, so a steady flux is the same on both sides of the edge
+ * of a bed. At rest eps_a F_a = - m_a g, which gives Archimedes' buoyancy also at a surface or a
+ * wall, where sums over neighbours are not exact. The laws of sd_drag.h are for a force beside the
  * buoyancy of clear water, with the excess pressure of the mixture in it; here that pressure acts
  * by F_a, and what is left is 1 - phi of them: of a bed that floats, n F = n (M - rho V) g = -
  * grad P', and F = D + V (- grad P') = D + phi F.
@@ -85,9 +87,9 @@ void sd_sph_grain_weights(sd_sph_kernel kernel, double h, const sd_sph_around *l
 void sd_sph_grain_fractions(const sd_sph_around *list, const double *V, const double *volume,
                             const double *weight, const double *wet, double *phi);
 
-/* Adds q_a - v_a to flux [3m], of slip [3n]: u_j - v_j. */
+/* Adds what grains of velocities v [3n] carry, q_a - eps_a v_a, to flux [3m]. */
 void sd_sph_grain_flux(const sd_sph_around *list, const double *V, const double *volume,
-                       const double *weight, const double *wet, const double *slip, double *flux);
+                       const double *weight, const double *wet, const double *v, double *flux);
 
 /* Means of the water at each grain, means [n] out: sum_a w_aj of numbers [m]; and [3n] of vectors
  * [3m]. */

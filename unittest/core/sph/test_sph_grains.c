@@ -74,35 +74,39 @@ static void no_volume_is_lost(void **state)
   CHECK_NEAR(in_water, of_grains, 1e-14 * of_grains);
 }
 
-/* The work of forces f on the water, with the stresses that they put on grains and the reactions
- * of these, is f.q: what pressure gives, the rate of the density takes. */
+/* The work of forces f on the water, which keeps 1 - phi of them, and of the stresses that they
+ * put on grains is f.q: what pressure gives, the rate of the density takes. Momentum is kept. */
 static void forces_work_on_the_flux(void **state)
 {
   (void) state;
   uint64_t seed = 12;
   double f[3 * WATER], v[3 * WATER], U[3 * GRAINS], per_volume[3 * WATER], mean[3 * GRAINS],
-      T[3 * GRAINS], u[3 * GRAINS], slip[3 * GRAINS], force[3 * WATER], q[3 * WATER],
-      work = 0.0, of_flux = 0.0, size = 0.0;
+      T[3 * GRAINS], phi[WATER] = {0.0}, q[3 * WATER] = {0.0}, work = 0.0, of_flux = 0.0,
+      size = 0.0, kept[3] = {0.0};
   for (int k = 0; k < 3 * WATER; k++) {
     f[k] = wall[k / 3] ? 0.0 : uniform(&seed, -1.0, 2.0);
-    v[k] = q[k] = uniform(&seed, -3.0, 1.0);
-    force[k] = f[k];
+    v[k] = uniform(&seed, -3.0, 1.0);
     per_volume[k] = f[k] / volume[k / 3];
   }
   for (int k = 0; k < 3 * GRAINS; k++) U[k] = uniform(&seed, -1.0, 5.0);
   sd_sph_grain_vector_means(&list, weight, per_volume, mean);
   sd_sph_grain_stresses(GRAINS, mean, wet, V, T);
-  sd_sph_grain_reactions(&list, weight, T, force);
-  sd_sph_grain_vector_means(&list, weight, v, u);
-  for (int k = 0; k < 3 * GRAINS; k++) slip[k] = u[k] - U[k];
-  sd_sph_grain_flux(&list, V, volume, weight, wet, slip, q);
+  sd_sph_grain_fractions(&list, V, volume, weight, wet, phi);
+  sd_sph_grain_flux(&list, V, volume, weight, wet, U, q);
   for (int k = 0; k < 3 * WATER; k++) {
-    work += force[k] * v[k];
+    const double eps = 1.0 - phi[k / 3];
+    q[k] += eps * v[k];
+    work += eps * f[k] * v[k];
+    kept[k % 3] -= phi[k / 3] * f[k];
     of_flux += f[k] * q[k];
     size += fabs(f[k] * v[k]);
   }
-  for (int k = 0; k < 3 * GRAINS; k++) work += T[k] * U[k];
+  for (int k = 0; k < 3 * GRAINS; k++) {
+    work += T[k] * U[k];
+    kept[k % 3] += T[k];
+  }
   CHECK_NEAR(work, of_flux, 1e-13 * size);
+  for (int c = 0; c < 3; c++) CHECK_NEAR(kept[c], 0.0, 1e-13 * WATER);
 }
 
 /* The water gets what the grains get, to rounding, and a field that is the same everywhere is its

@@ -13,7 +13,7 @@ def brown_lawler(Re):
 
 
 def scene(size, mu, c, dt, fix, grains, diameter=0.5, boundary="p p p", density=2.65, pair="central shift yes", gravity="", floor=0, newton="on",
-          before_fix="", mover="fix mg grains nve/sphere"):
+          before_fix="", mover="fix mg grains nve/sphere", delta=0.1):
     """Water (type 1) fills size[0] x size[1] x size[2] spacings, with `floor` rows of wall (type 3) below; grains (type 2): commands."""
     x, y, z = size
     return f"""
@@ -48,7 +48,7 @@ def scene(size, mu, c, dt, fix, grains, diameter=0.5, boundary="p p p", density=
     neigh_modify delay 0 every 1
     timestep {dt}
     fix eos sph sph/pressure Tait {c * c / 7} 1 7
-    fix den sph sph/density/continuity delta 0.1 volume yes
+    fix den sph sph/density/continuity delta {delta} volume yes
     {f"fix wall floor wall/adami/sph gravity {gravity}" if floor else ""}
     fix mw water nve/sph
     {mover}
@@ -213,6 +213,35 @@ def test_a_suspension_settles_as_its_law_has_it(law):
     assert v[kind == 1].mean() > 0.05 and abs((m * v).sum()) < 1e-12 * (m * np.abs(v)).sum()
 
 
+@pytest.mark.parametrize("law, phi, w", [("brown_lawler", 0.2, 0.05), ("beetstra", 0.4, 0.02)])
+def test_a_suspension_settles_in_a_tank_with_the_flow_back(law, phi, w):
+    """From the floor to the surface, heavier than water by F(w): the grains of its middle fall at (1 - phi) w, with the law's slip w, as the water between
+    them rises by phi w. Over the 400 steps, in which sound of the beginning goes up and down twice: 5 %."""
+    mu, g, c, dt, high = 0.1, 0.1, 8, 0.05, 16
+    d = (phi * 6 / np.pi) ** (1 / 3)
+    density = 1 + 3 * np.pi * mu * d * w * of_bed(law, w * d / mu, 1 - phi) / (g * np.pi / 6 * d**3)
+    bed = f"lattice sc 1 origin 0.5 0.5 0.5\nregion bed block 0 5 0 5 0 {high} units box\ncreate_atoms 2 region bed"
+    lmp = start()
+    text = scene((5, 5, high + 4), mu, c, dt, "drag " + law, bed, d, "p p f", density=density, gravity=f"0 0 {-g}", floor=4, before_fix=f"""
+    fix down all gravity {g} vector 0 0 -1
+    fix bottom grains wall/gran hooke 30 NULL 1 NULL 0 0 zplane 0 NULL
+    variable rho atom (1+7*{g}*{1 + phi * (density - 1)}*({high}-z)/{c * c})^(1/7)
+    set group sph sph/rho v_rho
+    set group sph mass v_rho
+    displace_atoms grains random 0.1 0.1 0.1 77 units box
+    velocity grains set 0 0 {-(1 - phi) * w} units box
+    velocity water set 0 0 {phi * w} units box""")
+    run(lmp, text.replace("zero 1", "gran/hooke 30 NULL 1 NULL 0 0").replace("pair_coeff * * zero", "pair_coeff * * none\npair_coeff 2 2 gran/hooke"))
+    run(lmp, "run 0")
+    before = by_id(lmp, "x", 3)[:, 2]
+    run(lmp, "run 400")
+    after, kind = by_id(lmp, "x", 3)[:, 2], by_id(lmp, "type")
+    lmp.close()
+    middle = (kind == 2) & (before > 5) & (before < high - 5)
+    speed = (before - after)[middle].mean() / (400 * dt)
+    assert abs(speed / ((1 - phi) * w) - 1) < 0.05, speed / ((1 - phi) * w)
+
+
 def test_the_water_of_a_tank_rises_by_the_volume_of_grains_that_are_lowered_into_it():
     """18 grains from the air to the middle of the water: the level rises by their volume over the area, to a twentieth of the spacing of the water."""
     g = 0.05
@@ -233,11 +262,11 @@ def test_the_water_of_a_tank_rises_by_the_volume_of_grains_that_are_lowered_into
 
 
 def test_the_flux_goes_through_the_edges_of_a_block():
-    """(1 - phi) u is that of the clear water within a block of grains, 0.52 of its volume, whose edges are as sharp as the kernel, where phi at the water
-    and its mean at the grains differ: 5 %."""
+    """(1 - phi) u is that of the clear water through a block of grains, 0.52 of its volume, whose edges are as sharp as the kernel: 2 %, as the mean over h to
+    both sides, everywhere along x. With delta 0.1 it would be 2.4 %: delta lets water through where the slope of the pressure changes."""
     mu, G = 0.1, 0.05
     lmp = start()
-    run(lmp, scene((5, 5, 16), mu, 25, 0.01, "drag ergun", BLOCK, 1.0, mover="", pair="central artVisc 0.2 0 0.04 shift yes",
+    run(lmp, scene((5, 5, 16), mu, 25, 0.01, "drag ergun", BLOCK, 1.0, mover="", pair="central artVisc 0.2 0 0.04 shift yes", delta=0.02,
                    before_fix=f"fix push water gravity {G:.17g} vector 0 0 1"))
     run(lmp, "run 600")
     n = lmp.extract_global("nlocal")
@@ -245,8 +274,10 @@ def test_the_flux_goes_through_the_edges_of_a_block():
     phi = np.array(lmp.numpy.extract_fix("g", 1, 2))[:n, 0]
     water, z, flux = kind == 1, x[:, 2], v[:, 2] * (1 - phi)
     lmp.close()
-    clear, inside = flux[water & ((z < 2) | (z > 14))].mean(), flux[water & (z > 6) & (z < 10)].mean()
-    assert clear > 0 and abs(inside / clear - 1) < 0.05, inside / clear
+    assert phi[water].max() > 0.5 and phi[water].min() < 1e-3
+    rows = np.array([flux[water & (z >= k) & (z < k + 1)].mean() for k in range(16)])
+    along = sum(np.roll(rows, k) for k in range(4)) / 4
+    assert rows.mean() > 0 and np.abs(along / rows.mean() - 1).max() < 0.02, along / rows.mean()
 
 
 def test_a_bed_in_a_tank_stays_at_rest():
