@@ -9,7 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <set>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
@@ -22,7 +22,8 @@ void FixHydroVans::look_at_neighbours()
 
 /* The law that holds unless one is chosen is made for beads of some millimetres in water. Where grains
  * fall at a Reynolds number of 1 to some hundreds it gives up to 1.4 times the speed of spheres: the
- * worst grain of all. Each size once. */
+ * worst grain of all. By dimensions that ratio follows from weight rho/eta^2, so that one grain stands
+ * for all whose weights differ by less than a hundredth. */
 void FixHydroVans::tell_fall()
 {
   if (told_fall || set.drag_given || set.yade() || !set.has_grains()) return;
@@ -36,11 +37,11 @@ void FixHydroVans::tell_fall()
     int rank;
   } mine = {1.1, comm->me}, worst;
   double found[4] = {0.0, 0.0, 0.0, 0.0};    // radius, its two speeds, Re
-  std::map<std::pair<double, double>, bool> seen;
-  for (int i = 0; i < atom->nlocal && seen.size() < 1000; i++) {
+  std::set<long> seen;
+  for (int i = 0; i < atom->nlocal; i++) {
     const double a = atom->radius[i], m = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]],
                  weight = g * std::fabs(m - 4.0 / 3.0 * SD_PI * a * a * a * rho);
-    if (!take[i] || !(weight > 0.0) || !seen.emplace(std::make_pair(a, m), true).second) continue;
+    if (!take[i] || !(weight > 0.0) || !seen.insert(std::lround(100.0 * std::log(weight))).second) continue;
     const double w = sd_fall_speed(alone, rho, eta, a, weight),
                  right = sd_fall_speed(sphere, rho, eta, a, weight);
     if (!(w > mine.ratio * right)) continue;

@@ -362,3 +362,28 @@ run 0
     text = run_lmp(tmp_path, script).stdout
     assert text.count("keyword drag: by its default, yade, a lone grain of radius") == (Re is not None), text
     assert Re is None or f"(Re = {Re}" in text, text
+
+
+def test_the_default_drag_is_warned_of_by_the_worst_of_thousands_of_sizes(tmp_path):
+    """Two thousand specks of as many sizes, for which the default is right, stand before the one sphere for which it is not."""
+    script = """plugin load stokesdynplugin.so
+units si
+atom_style sphere
+atom_modify sort 0 0
+boundary p p f
+region box block 0 0.1 0 0.1 -1 1 units box
+create_box 2 box
+create_atoms 1 random 2000 4711 box
+create_atoms 2 single 0.05 0.05 0.9
+variable size atom 4e-6*(1+id/10000)
+set type 1 diameter v_size
+set type 1 density 2650
+set type 2 diameter 0.015 density 1120
+pair_style zero 0.01
+pair_coeff * *
+fix s all hydro/vans 1 mesh 100 0.02 -1 fluid 962 0.113 gravity 0 0 -9.81 couple none stream rest
+timestep 1e-9
+run 0
+"""
+    text = run_lmp(tmp_path, script).stdout
+    assert "a lone grain of radius 0.0075 falls" in text and "(Re = 12" in text, text

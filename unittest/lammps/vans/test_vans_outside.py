@@ -72,25 +72,32 @@ def test_a_dense_batch_settles_by_its_law_and_near_the_measured_speed(law):
     s.close()
 
 
-BED = """
+def over_fixed_grains(d, long, high, density, loose, rough):
+    """The head of an input: a layer of fixed grains of diameter d at heights between -rough and rough, `long` by 6 of them, and above it others that the
+    command `loose` makes; lengths in d."""
+    return f"""
 plugin load stokesdynplugin.so
 units si
 atom_style sphere
+atom_modify map array
 boundary p p f
 newton off
 comm_modify vel yes
-lattice sc 0.006
-region box block 0 6 0 6 -1.2 16
+lattice sc {d}
+region box block 0 {long} 0 6 -1.2 {high}
 create_box 2 box
-region bottom block 0 6 0 6 -0.5 0.4
+region bottom block 0 {long} 0 6 -0.5 0.4
 create_atoms 1 region bottom
-region cloud block 0 6 0 6 1 5
-create_atoms 2 random 100 4711 cloud
-set group all diameter 0.006 density 2500
+{loose}
+set group all diameter {d} density {density}
 group fixed type 1
 group loose type 2
-variable rough atom 0.00275*(2*random(0,1,4711)-1)
+variable rough atom {rough}*(2*random(0,1,4711)-1)
 set group fixed z v_rough
+"""
+
+
+BED = over_fixed_grains(0.006, 6, 16, 2500, "region cloud block 0 6 0 6 1 5\ncreate_atoms 2 random 100 4711 cloud", 0.00275) + """
 pair_style gran/hooke/history 2000 NULL 1620 NULL 0.4 1
 pair_coeff * *
 neighbor 0.0015 bin
@@ -132,32 +139,12 @@ def test_a_fixed_bed_is_as_rough_as_the_page_says():
     s.close()
 
 
-HOPS = """
-plugin load stokesdynplugin.so
-units si
-atom_style sphere
-boundary p p f
-newton off
-comm_modify vel yes
-atom_modify map array
-lattice sc 0.015
-region box block 0 40 0 6 -1.2 20
-create_box 2 box
-region bottom block 0 40 0 6 -0.5 0.4
-create_atoms 1 region bottom
-region start block 0 40 1 5 2 4
-create_atoms 2 random 6 4711 start
-set group all diameter 0.015
-set group all density 2650
-group fixed type 1
-group loose type 2
-variable rough atom 0.0045*(2*random(0,1,4711)-1)
-set group fixed z v_rough
+HOPS = over_fixed_grains(0.015, 40, 20, 2650, "region start block 0 40 1 5 2 4\ncreate_atoms 2 random 6 4711 start", 0.0045) + """
 pair_style gran/hooke/history 20000 NULL {damp} NULL 0.4 1
 pair_coeff * *
 neighbor 0.003 bin
 neigh_modify delay 0 every 1 exclude type 1 1 exclude type 2 2
-fix weight loose gravity 9.81 vector 0.0 0 -1
+fix weight loose gravity 9.81 vector 0 0 -1
 timestep 2e-5
 fix move loose nve/sphere
 fix s loose hydro/vans 1 mesh 300 0.001 -0.0075 fluid 1000 0.001 gravity 0 0 -9.81 couple none profile file {profile} stream rest drag brown_lawler felt volume
