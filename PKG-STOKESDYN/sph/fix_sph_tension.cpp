@@ -17,10 +17,6 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-/* How often the curvature goes a support further into the fluid. One reaches all particles that the surface cuts off
- * from neighbours; with 1, 2 and 4 the frequency of a drop of 20 across is the same to 0.1 %. */
-static constexpr int INWARDS = 1;
-
 /* What the tests of oscillating drops have shown to hold: doc/fix_sph_tension.md. */
 static constexpr double LEAST_OHNESORGE = 0.01, LEAST_STIFFNESS = 12.0;
 static constexpr int ACROSS = 20;    // particles over the smallest drop that is resolved
@@ -184,21 +180,36 @@ void FixSphTension::look_at_particles()
 {
   const int n = atom->nlocal + atom->nghost, nlocal = atom->nlocal;
   list = pair->neighbours_of_each();
-  film = {&surface, &list, n, nullptr, nullptr};
+  film = {&surface, &list, n, nullptr, nullptr, nullptr, nullptr};
   x4.resize(4 * (size_t) (n + 1));
   sd_sph_pack_x(n, n ? atom->x[0] : nullptr, nullptr, nullptr, 0.0, x4.data());
   mass.resize(nlocal + 1);
   x4[4 * (size_t) n + 3] = 0.0;
+  inside.resize(n + 1);
   for (int i = 0; i < n; i++) {
+    inside[i] = pair->is_whole(i);
     const double m = pair->is_particle(i) ? Sph::mass(lmp, i) : 0.0;
     x4[4 * (size_t) i + 3] = m / rho0;
     if (i < nlocal) mass[i] = m;
   }
   film.x4 = x4.data();
+  film.inside = inside.data();
+  find_deep();
   if (!walls) return;
   wall.assign(n + 1, 0);
   for (int i = 0; i < n; i++) wall[i] = pair->is_of_wall(i);
   film.wall = wall.data();
+}
+
+/* Where the surface may be: in supports that are cut, and beside walls. */
+void FixSphTension::find_deep()
+{
+  marked.resize(film.all);
+  for (int i = 0; i < film.all; i++) marked[i] = !inside[i] && x4[4 * (size_t) i + 3] > 0.0;
+  deep.resize(atom->nlocal);
+  cells.resize(SD_SPH_DEEP_CELLS(film.all));
+  sd_sph_find_deep(film.all, atom->nlocal, x4.data(), marked.data(), 2.0 * surface.h, cells.data(), deep.data());
+  film.deep = deep.data();
 }
 
 void FixSphTension::find_normals()
@@ -246,57 +257,42 @@ void FixSphTension::look_at_walls() const
   }
 }
 
-/* <k> of particles of this rank, as neighbours see them. */
-const double *FixSphTension::mean_of(const double *k, std::vector<double> &mean)
+/* k of particles of this rank, and of their ghosts */
+const double *FixSphTension::spread(const std::vector<double> &k)
 {
-  const size_t n = (size_t) film.all;
-  one.assign(n + 1, 0.0);
-  std::copy_n(k, atom->nlocal, one.data());
+  one.assign((size_t) film.all + 1, 0.0);
+  std::copy_n(k.data(), atom->nlocal, one.data());
   forward(one.data(), 1);
-  carried.assign(2 * (n + 1), 0.0);
-  for (size_t i = 0; i < n; i++) {
-    const double w = at_surface[4 * i + 3];
-    carried[2 * i] = one[i];
-    carried[2 * i + 1] = w > 0.0 ? w : 0.0;
-  }
-  mean.resize(atom->nlocal + 1);
-  sd_sph_film_means(&film, at_surface.data(), carried.data(), scratch.data(), mean.data());
-  return mean.data();
-}
-
-void FixSphTension::find_curvatures()
-{
-  const size_t nlocal = atom->nlocal, n = (size_t) film.all;
-  turns.resize(16 * nlocal + 4);
-  kappa.resize(nlocal + 1);
-  scratch.resize(2 * nlocal + 2);
-  const double *beside_wall = walls ? at_wall.data() : nullptr;
-  sd_sph_film_curvatures(&film, whole.data(), at_surface.data(), beside_wall, turns.data(), kappa.data());
-  mean_of(kappa.data(), once);
-  mean_of(once.data(), twice);
-  sd_sph_film_sharpen(&film, kappa.data(), once.data(), twice.data(), beside_wall, twice.data());
-  // the same rows as those of a mean, with ks in place of k
-  one.assign(n + 1, 0.0);
-  std::copy_n(twice.data(), nlocal, one.data());
-  forward(one.data(), 1);
-  for (size_t i = 0; i < n; i++) carried[2 * i] = one[i];
-  next.resize(2 * (n + 1));
-  for (int round = 0; round < INWARDS; round++) {
-    if (round > 0) forward(carried.data(), 2);
-    sd_sph_film_carry(&film, at_surface.data(), twice.data(), carried.data(), next.data());
-    std::copy_n(next.data(), 2 * nlocal, carried.data());
-  }
+  return one.data();
 }
 
 /* Friction sees the velocities of the time of the force. */
+void FixSphTension::find_curvatures()
+{
+  const size_t nlocal = atom->nlocal, n = (size_t) film.all, entries = sd_sph_skin_size(&film, at_surface.data());
+  v4.resize(4 * (n + 1));
+  sd_sph_pack_v(film.all, n ? atom->vest[0] : nullptr, atom->rho, v4.data());
+  turns.resize(SD_SPH_SKIN_SUMS * nlocal + 4);
+  first.resize(nlocal + 1);
+  if (skin.size() < entries) {
+    skin.resize(entries + entries / 8);
+    weights.resize(entries + entries / 8);
+  }
+  for (auto *rows : {&kappa, &once, &twice}) rows->resize(nlocal + 1);
+  const sd_sph_skin pairs = {first.data(), skin.data(), weights.data()};
+  const double *beside_wall = walls ? at_wall.data() : nullptr, *surface_rows = at_surface.data();
+  sd_sph_film_curvatures(&film, whole.data(), surface_rows, beside_wall, v4.data(), &pairs, turns.data(), kappa.data());
+  sd_sph_film_means(&film, surface_rows, &pairs, turns.data(), spread(kappa), once.data());
+  sd_sph_film_means(&film, surface_rows, &pairs, turns.data(), spread(once), twice.data());
+  sd_sph_film_sharpen(&film, kappa.data(), once.data(), twice.data(), beside_wall, once.data());
+  sd_sph_film_inwards(&film, surface_rows, &pairs, turns.data(), spread(once), kappa.data());
+}
+
 void FixSphTension::add_forces()
 {
-  const int n = film.all;
-  v4.resize(4 * (size_t) (n + 1));
   F.resize(3 * (size_t) atom->nlocal + 1);
-  sd_sph_pack_v(n, n ? atom->vest[0] : nullptr, atom->rho, v4.data());
   const sd_sph_tension how = {sigma, sd_sph_surface_friction(sigma, rho0, surface.h)};
-  area = sd_sph_tension_forces(&film, &how, whole.data(), at_surface.data(), carried.data(), v4.data(), F.data());
+  area = sd_sph_tension_forces(&film, &how, whole.data(), at_surface.data(), turns.data(), kappa.data(), F.data());
 }
 
 /* In every step: drops that meet are one at once, whenever the run began and LAMMPS re-neighboured. */
@@ -339,7 +335,7 @@ void FixSphTension::show()
   for (int i = 0; i < atom->nlocal; i++) {
     const double *n = &at_surface[4 * (size_t) i];
     double *row = shown.give(i);
-    row[0] = carried[2 * (size_t) i];
+    row[0] = kappa[i];
     row[1] = std::max(n[3], 0.0);
     std::copy_n(n, 3, row + 2);
   }

@@ -3,6 +3,7 @@
 #ifndef SD_FIX_SPH_TENSION_H
 #define SD_FIX_SPH_TENSION_H
 
+#include "sd_sph_deep.h"
 #include "sd_sph_drops.h"
 #include "sd_sph_tension.h"
 #include "sph.h"
@@ -54,15 +55,18 @@ class FixSphTension : public SphFix {
   sd_sph_both list = {};
   sd_sph_film film = {};
   Rows x4, v4, at_surface, contact, whole, at_wall, sums, beside, turns;
-  std::vector<int> wall, parent, place;
-  std::vector<double> one, kappa, once, twice, scratch, carried, next, F, name, mass, held;
+  std::vector<int> wall, parent, place, skin;
+  std::vector<size_t> first;
+  std::vector<char> inside, marked, cells, deep;
+  std::vector<double> one, kappa, once, twice, weights, F, name, mass, held;
   std::vector<sd_sph_drop> drops;
   double area = 0.0, sum[3] = {0.0, 0.0, 0.0};
   int ndrops = 0;
   void look_at_particles();
+  void find_deep();
   void find_normals();
   void find_curvatures();
-  const double *mean_of(const double *k, std::vector<double> &mean);
+  const double *spread(const std::vector<double> &k);
   void add_forces();
   void find_drops();
   void keep_momentum();

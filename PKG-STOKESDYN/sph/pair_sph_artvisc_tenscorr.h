@@ -93,6 +93,9 @@ class PairSph : public LAMMPS_NS::Pair {
   /* With shift or delta: the neighbours of each particle of this rank in the latest force, those nearer
    * than 2 h and some more. */
   sd_sph_both neighbours_of_each() { return near.both(atom->nlocal); }
+  /* For fix sph/tension: is the support of particle i, of this rank or a ghost, whole? In the middle of the latest
+   * step. */
+  bool is_whole(int i) const { return order[(pliant ? SD_SPH_MOST_COLUMNS : 8) * (size_t) i + 7] > 0.0; }
   /* [3 n] the velocity that particles are moved with beside their own; nullptr: none. */
   const double *shift() const;
   /* [4 n] the latest force of this style on each owned particle, and what of it is friction (artVisc
@@ -142,6 +145,8 @@ class PairSph : public LAMMPS_NS::Pair {
   FixSphGrains *grains = nullptr;
   // all of these, as errors name them when they are gone
   std::vector<std::pair<const LAMMPS_NS::Fix *, std::string>> members;
+  // above which least eigenvalue of M a support is whole; 0: nobody asks
+  double whole = 0.0;
   int pressure_bits = 0, leapfrog_bits = 0, own_vest_bits = 0;
   // groups of all fixes that displace particles
   int displaced_bits = 0;

@@ -139,6 +139,7 @@ void PairSph::find_integrators()
 void PairSph::choose_scheme()
 {
   model.delta = continuity && leapfrog ? continuity->delta : 0.0;
+  whole = fixes_of(lmp, FixSphTension::STYLE).empty() ? 0.0 : SD_SPH_WHOLE;
   const bool volume = continuity && continuity->volume;
   const char *what = corrects ? "correction yes " : pliant ? "shift pliant " : "shift yes ";
   auto refuse = [&](bool when, const std::string &why) {

@@ -286,8 +286,8 @@ void PairSph::close_sums()
   order.resize(columns * (size_t) (n + 1));
   kick.resize(corrects || pliant ? 3 * (size_t) atom->nlocal + 1 : 0);
   const double least = update->setupflag ? 0.6 : 0.5;
-  const sd_sph_closing closing = {atom->nlocal, sums.data(), atom->mask, own_vest_bits,
-                                  least,        rate.data(), order.data(), kick.data()};
+  const sd_sph_closing closing = {atom->nlocal, sums.data(),  atom->mask,  own_vest_bits, least,
+                                  whole,        rate.data(), order.data(), kick.data()};
   const int stops = sd_sph_close(&model, &particles, &closing);
   if (stops >= 0)
     voice.at_step().fail_one("keyword correction: atom " + std::to_string(atom->tag[stops]) +

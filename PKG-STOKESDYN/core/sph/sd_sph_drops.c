@@ -1,54 +1,25 @@
 #include "sd_sph_drops.h"
 
+#include "sd_sph_tension_internal.h"
+
 #include <stdlib.h>
 #include <string.h>
 
-/* Particles of other pair styles, which have no volume here, are in no drop. */
-static int is_fluid(const sd_sph_film *f, int i)
-{
-  return !(f->wall && f->wall[i]) && f->x4[4 * (size_t) i + 3] > 0.0;
-}
-
-/* The root of the tree of i; the way there is halved for the next who asks. */
-static int drops_root_of(int *parent, int i)
-{
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 void sd_sph_find_drops(const sd_sph_film *f, int *parent)
 {
-  const sd_sph_both *list = f->list;
-  const double reach = 2.0 * f->surface->h;
-  for (int i = 0; i < f->all; i++) parent[i] = i;
-  for (int i = 0; i < list->n; i++) {
-    if (!is_fluid(f, i)) continue;
-    const double *x = f->x4 + 4 * (size_t) i;
-    int mine = drops_root_of(parent, i);
-    for (int m = 0; m < list->count[i]; m++) {
-      const int j = list->neighbor[i][m];
-      /* of a pair of this rank one side is enough */
-      if ((j > i && j < list->n) || j >= f->all || parent[j] == mine || !is_fluid(f, j)) continue;
-      const double *y = f->x4 + 4 * (size_t) j, d[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
-      if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach)) continue;
-      const int other = drops_root_of(parent, j);
-      if (other < mine)
-        mine = parent[mine] = other;
-      else
-        parent[other] = mine;
-    }
-  }
+  for (int i = 0; i <= f->all; i++) parent[i] = i;
+  sd_sph_loops_of_films()->links(f, parent);
 }
 
 int sd_sph_name_drops(int all, int *parent, double *name)
 {
   int changed = 0;
   for (int i = 0; i < all; i++) {
-    const int root = drops_root_of(parent, i);
+    const int root = sd_sph_root_of_drop(parent, i);
     if (name[i] < name[root]) name[root] = name[i];
   }
   for (int i = 0; i < all; i++) {
-    const double of_drop = name[drops_root_of(parent, i)];
+    const double of_drop = name[sd_sph_root_of_drop(parent, i)];
     changed |= of_drop < name[i];
     name[i] = of_drop;
   }
@@ -61,8 +32,8 @@ int sd_sph_sum_drops(const sd_sph_film *f, int *parent, const double *name, cons
   int count = 0;
   for (int i = 0; i < f->all; i++) place[i] = -1;
   for (int i = 0; i < f->list->n; i++) {
-    if (!is_fluid(f, i)) continue;
-    int *at = &place[drops_root_of(parent, i)];
+    if (!sd_sph_in_drop(f, i)) continue;
+    int *at = &place[sd_sph_root_of_drop(parent, i)];
     if (*at < 0) {
       *at = count++;
       out[*at] = (sd_sph_drop){.name = name[i]};
@@ -112,8 +83,8 @@ int sd_sph_keep_momentum(const sd_sph_film *f, int *parent, const int *place, co
     for (int d = 0; d < 3; d++) mine[k].F[d] = whole->held > 0.0 ? 0.0 : whole->F[d] / whole->mass;
   }
   for (int i = 0; i < f->list->n; i++) {
-    if (!is_fluid(f, i)) continue;
-    const sd_sph_drop *drop = &mine[place[drops_root_of(parent, i)]];
+    if (!sd_sph_in_drop(f, i)) continue;
+    const sd_sph_drop *drop = &mine[place[sd_sph_root_of_drop(parent, i)]];
     for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] -= mass[i] * drop->F[d];
   }
   return drops;

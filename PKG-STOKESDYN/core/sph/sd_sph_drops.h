@@ -9,8 +9,8 @@
 
 SD_BEGIN_C
 
-/* parent [all]: each particle, also those that are only neighbours, becomes part of the tree of its drop.
- * From pairs of fluid of the list. */
+/* parent [all+1]: each particle, also those that are only neighbours, becomes part of the tree of its drop.
+ * From pairs of fluid of the list, in its first parts. */
 void sd_sph_find_drops(const sd_sph_film *f, int *parent);
 
 /* One round of the names of drops on several ranks: the smallest name [all] of the particles of a tree here

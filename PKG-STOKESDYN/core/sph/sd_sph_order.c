@@ -130,6 +130,7 @@ int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_
     /* what is corrected, and where its surface is, goes by all fluids */
     const sd_sph_symmetric whole = level == SD_SPH_MIXTURE ? moment(model->dimension, sums + 24) : M;
     const int inside = flows && sd_sph_above(&whole, SURFACE);
+    du[3] = c->whole > 0.0 && inside && sd_sph_above(&whole, c->whole);
     if (inside)
       order_shift(model->dimension, sums, sd_sph_of_pair(model, p, i, i)->support, du);
     if (level >= SD_SPH_VELOCITY) {

@@ -21,6 +21,9 @@ typedef struct {
   int moving;
   /* correction stops where the smallest eigenvalue of M is below */
   double least;
+  /* with shift: column 7 of order is 1 where a particle flows and the smallest eigenvalue of M is above this;
+   * 0: not asked for */
+  double whole;
   /* out [n], [sd_sph_columns n], and with pliant shift and correction [3 n] the acceleration (G B) du,
    * which is that of correction alone */
   double *rate, *order, *kick;

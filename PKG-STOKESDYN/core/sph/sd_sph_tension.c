@@ -8,11 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-static const sd_sph_film_loops *loops_of_films(void)
-{
-  return SD_KERNELS_OF(sd_sph_film_loops, baseline, sd_isa_of(SD_ISA_BEST));
-}
-
 // --- what a plane surface hides --------------------------------------------------------------------
 
 /* Over the plane at z of h = 1, with y from its middle: the integral of W, and that of y^2 W over 2 (D-1). */
@@ -122,7 +117,7 @@ static double own_share(const sd_sph_film *f, int i)
 
 void sd_sph_film_sums(const sd_sph_film *f, double *sums)
 {
-  loops_of_films()->sums(f, sums);
+  sd_sph_loops_of_films()->sums(f, sums);
   const double W0 = sd_sph_W(f->surface->kernel, f->surface->dimension, 0.0, f->surface->h);
   for (int i = 0; i < f->list->n; i++)
     sums[8 * (size_t) i + (is_wall(f, i) ? 4 : 0)] += W0 * f->x4[4 * (size_t) i + 3];
@@ -139,7 +134,7 @@ void sd_sph_film_wetness(const sd_sph_film *f, const double *sums, double *wet)
 void sd_sph_film_wet_walls(const sd_sph_film *f, const double *contact, const double *sums, double *beside)
 {
   memset(beside, 0, sizeof(double) * 8 * (size_t) f->list->n);
-  loops_of_films()->wet_walls(f, contact, sums, beside);
+  sd_sph_loops_of_films()->wet_walls(f, contact, sums, beside);
 }
 
 static double length3(const double *a)
@@ -190,7 +185,7 @@ void sd_sph_film_normals(const sd_sph_film *f, const double *sums, const double 
     }
     for (int c = 0; c < 4 && beside; c++) S_G[c] += beside[8 * (size_t) i + c];
     const double size = length3(S_G + 1);
-    if (!(size * h > FROM)) continue;
+    if (!(size * h > FROM) || (f->inside && f->inside[i] && !(of[4] > 0.0))) continue;
     n[3] = fmin(1.0, (size * h - FROM) / (TO - FROM));
     for (int d = 0; d < 3; d++) n[d] = -S_G[1 + d] / size;
     if (!beside) continue;
@@ -255,30 +250,40 @@ static void along_surface(const double *n, double A[9])
     }
 }
 
+size_t sd_sph_skin_size(const sd_sph_film *f, const double *surface)
+{
+  size_t size = SD_SPH_LANES, most = 0;
+  for (int i = 0; i < f->list->n; i++) {
+    const size_t count = (size_t) f->list->count[i];
+    if (surface[4 * (size_t) i + 3] > 0.0) size += count;
+    if (count > most) most = count;
+  }
+  return size + most;    // of one particle inside
+}
+
 void sd_sph_film_curvatures(const sd_sph_film *f, const double *whole, const double *surface,
-                            const double *at_wall, double *rows, double *kappa)
+                            const double *at_wall, const double *v4, const sd_sph_skin *skin, double *rows,
+                            double *kappa)
 {
   double gradient[9];
-  loops_of_films()->turns(f, surface, at_wall, rows);
+  sd_sph_loops_of_films()->turns(f, surface, at_wall, v4, skin, rows);
   for (int i = 0; i < f->list->n; i++) {
     kappa[i] = 0.0;
     if (!(surface[4 * (size_t) i + 3] > 0.0)) continue;
-    corrected_gradient(f->surface->dimension, rows + 16 * (size_t) i, gradient);
+    corrected_gradient(f->surface->dimension, rows + SD_SPH_SKIN_SUMS * (size_t) i, gradient);
     along_surface(surface + 4 * (size_t) i, gradient);
     const int curved = !at_wall || !(at_wall[4 * (size_t) i + 3] > 0.0);
     kappa[i] = sd_sph_surface_curvature(f->surface, gradient, whole[4 * (size_t) i], curved);
   }
 }
 
-void sd_sph_film_means(const sd_sph_film *f, const double *surface, const double *weighed, double *rows,
-                       double *mean)
+void sd_sph_film_means(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin,
+                       const double *rows, const double *k, double *mean)
 {
-  loops_of_films()->means(f, surface, 0.0, weighed, rows);
+  sd_sph_loops_of_films()->means(f, skin, k, mean);
   for (int i = 0; i < f->list->n; i++) {
-    mean[i] = 0.0;
-    if (!(surface[4 * (size_t) i + 3] > 0.0)) continue;
-    const double own = own_share(f, i) * weighed[2 * (size_t) i + 1];
-    mean[i] = (rows[2 * (size_t) i] + own * weighed[2 * (size_t) i]) / (rows[2 * (size_t) i + 1] + own);
+    const double w = surface[4 * (size_t) i + 3], own = w > 0.0 ? own_share(f, i) * w : 0.0;
+    mean[i] = w > 0.0 ? (mean[i] + own * k[i]) / (rows[SD_SPH_SKIN_SUMS * (size_t) i + 15] + own) : 0.0;
   }
 }
 
@@ -293,36 +298,33 @@ void sd_sph_film_sharpen(const sd_sph_film *f, const double *kappa, const double
   }
 }
 
-void sd_sph_film_carry(const sd_sph_film *f, const double *surface, const double *ks, const double *carried,
-                       double *next)
+void sd_sph_film_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin,
+                         double *rows, const double *ks, double *k)
 {
-  loops_of_films()->means(f, surface, -0.5, carried, next);
+  sd_sph_film_means(f, surface, skin, rows, ks, k);
+  sd_sph_loops_of_films()->inwards(f, surface, skin, ks, rows, k);
   for (int i = 0; i < f->list->n; i++) {
-    const double w = surface[4 * (size_t) i + 3], *now = carried + 2 * (size_t) i;
-    double *row = next + 2 * (size_t) i;
-    if (w < 0.0) {
-      row[0] = row[1] = 0.0;
-      continue;
-    }
-    const double own = own_share(f, i) * now[1], around = row[1] + own;
-    row[0] = around > 1e-9 ? w * ks[i] + (1.0 - w) * (row[0] + own * now[0]) / around : now[0];
-    row[1] = fmax(w, fmin(1.0, 2.0 * around));
+    const double w = surface[4 * (size_t) i + 3];
+    if (w > 0.0) k[i] = w * ks[i] + (1.0 - w) * k[i];
   }
 }
 
 // --- force -----------------------------------------------------------------------------------------
 
 double sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const double *whole,
-                             const double *surface, const double *carried, const double *v4, double *F)
+                             const double *surface, const double *rows, const double *k, double *F)
 {
+  const double factor = 2.0 * (f->surface->dimension + 2) * t->friction;
   double area = 0.0;
   for (int i = 0; i < f->list->n; i++) {
-    const double V = is_wall(f, i) ? 0.0 : f->x4[4 * (size_t) i + 3], *G = whole + 4 * (size_t) i + 1;
-    for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] = 2.0 * t->sigma * V * carried[2 * (size_t) i] * G[d];
-    area += 2.0 * V * length3(G);
+    const double V = is_wall(f, i) ? 0.0 : f->x4[4 * (size_t) i + 3], *G = whole + 4 * (size_t) i + 1,
+                 w = surface[4 * (size_t) i + 3], *rubs = rows + SD_SPH_SKIN_SUMS * (size_t) i + 16;
+    for (int d = 0; d < 3; d++) {
+      F[3 * (size_t) i + d] = 2.0 * t->sigma * V * k[i] * G[d];
+      if (w > 0.0) F[3 * (size_t) i + d] += factor * w * V * rubs[d];
+    }
+    if (w > 0.0 || (w == 0.0 && rubs[-1] > 0.0)) area += 2.0 * V * length3(G);
   }
-  const double factor = 2.0 * (f->surface->dimension + 2) * t->friction;
-  if (factor > 0.0) loops_of_films()->rubs(f, surface, v4, factor, F);
   return area;
 }
 

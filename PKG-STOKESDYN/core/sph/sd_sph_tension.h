@@ -5,7 +5,8 @@
  *   S_a = V W(0) + sum_f V W              G_a = sum_f V g d          (towards the fluid; 0 in the bulk)
  *   wetness c_w = min(1, S_w / max(1 - Sw_w, 0.02)), 0 where Sw_w > 0.98, Sw the sum over walls: then
  *   wall particles count in S and G in the measure c in which they are wet
- *   weight  w_a rises from 0 to 1 while h |G_a| rises from 0.1 to 0.3: who is at the surface
+ *   weight  w_a rises from 0 to 1 while h |G_a| rises from 0.1 to 0.3: who is at the surface. 0 where the
+ *           support is whole: all eigenvalues of M of sd_sph_order.h above SD_SPH_WHOLE, no wall in it
  *   normal  n = - G/|G|; beside a wall, with e from the wall into the fluid and t the direction of - Gf
  *           across e, it goes over to the normal of the contact angle, sin(theta) t + cos(theta) e, with
  *           nw = min(1, 2 Sw)
@@ -18,7 +19,7 @@
  *           beta(z) = 1/(2 (D-1) h) times the integral of y^2 W over the plane at z. |kappa| <= 2 (D-1)/h
  *   means   <k>_a = sum w_b V W k_b / sum w_b V W with a itself; k = <kappa> + 2.8 (<kappa> - <<kappa>>), but
  *           beside a wall k = (1 - nw) k + nw kappa; ks = k (1 + 0.16 h k/(D-1))
- *   inwards k_a = w_a ks_a + (1 - w_a) sum v_b V W k_b / sum v_b V W; v = w, then max(w, min(1, 2 sum v V W))
+ *   inwards k_a = w_a ks_a + (1 - w_a) sum w_b V W ks_b / sum w_b V W with a itself
  *   force   F_a = 2 sigma V k_a G_a: 2, since the inner half of the smoothed step carries the particles
  * The force acts at the mean depth 0.37 h, where a wave of the surface moves the fluid less, by
  * exp(- 0.37 k h). The two numbers of ks give a part of that back: with 1 and 0 the frequency of a drop of 20
@@ -65,9 +66,13 @@ typedef struct {
   const double *x4;
   /* [all+1] 1: of a wall; NULL: there are no walls */
   const int *wall;
+  /* [all] 1: the support is whole, but for walls; and of those [n] 1: nobody with w > 0 is in reach, so that
+   * loops may pass over it. NULL: not known of any */
+  const char *inside, *deep;
 } sd_sph_film;
+#define SD_SPH_WHOLE 0.95
 
-/* sums [8 n]: S Gf | Sw Gw, own V W(0) contained. */
+/* sums [8 n]: S Gf | Sw Gw, own V W(0) contained; 0 of those that are deep. */
 enum { SD_SPH_FILM_SUMS = 8 };
 void sd_sph_film_sums(const sd_sph_film *f, double *sums);
 
@@ -84,29 +89,41 @@ void sd_sph_film_wet_walls(const sd_sph_film *f, const double *contact, const do
 void sd_sph_film_normals(const sd_sph_film *f, const double *sums, const double *beside, double *whole,
                          double *surface, double *at_wall);
 
-/* kappa [n] of particles with w > 0, 0 elsewhere; surface [4 (all+1)]; rows [16 n]: the caller's scratch. */
-void sd_sph_film_curvatures(const sd_sph_film *f, const double *whole, const double *surface,
-                            const double *at_wall, double *rows, double *kappa);
+/* Pairs of particles of the surface: those of i are first[i] .. first[i+1] - 1, with w_b V_b W. Room for
+ * first [n+1], and for sd_sph_skin_size neighbours and weights. */
+typedef struct {
+  size_t *first;
+  int *neighbor;
+  double *weight;
+} sd_sph_skin;
+size_t sd_sph_skin_size(const sd_sph_film *f, const double *surface);
 
-/* <k>_a [n], 0 where w is 0; weighed [2 (all+1)]: rows k w, 0 0 of walls; rows [2 n]: scratch. */
-void sd_sph_film_means(const sd_sph_film *f, const double *surface, const double *weighed, double *rows,
-                       double *mean);
+/* Finds the skin, and kappa [n] of particles with w > 0, 0 elsewhere; surface [4 (all+1)], row `all` of it 0;
+ * v4 [4 (all+1)] v, unused. rows [SD_SPH_SKIN_SUMS n]: their sums, for what follows. */
+enum { SD_SPH_SKIN_SUMS = 20 };
+void sd_sph_film_curvatures(const sd_sph_film *f, const double *whole, const double *surface,
+                            const double *at_wall, const double *v4, const sd_sph_skin *skin, double *rows,
+                            double *kappa);
+
+/* <k> [n] of k [all+1], 0 where w is 0. */
+void sd_sph_film_means(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin,
+                       const double *rows, const double *k, double *mean);
 
 /* ks [n] of kappa, <kappa> and <<kappa>>. */
 void sd_sph_film_sharpen(const sd_sph_film *f, const double *kappa, const double *once, const double *twice,
                          const double *at_wall, double *ks);
 
-/* One step inwards, from carried [2 (all+1)], rows k v, to next [2 n]. Before the first they are ks w. */
-void sd_sph_film_carry(const sd_sph_film *f, const double *surface, const double *ks, const double *carried,
-                       double *next);
+/* k [n] of ks [all+1]: inwards, as far as the surface reaches; rows then say of all fluid whether it does. */
+void sd_sph_film_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin, double *rows,
+                         const double *ks, double *k);
 
-/* F [3 n] of k, rows k v of carried [2 n], with v4 [4 (all+1)] v, unused. Returns the area of the surface of
- * the fluid, 2 sum V |G|, without that on walls. friction: mu_s. */
+/* F [3 n] of k. Returns the area of the surface of the fluid, 2 sum V |G| over all that it reaches, without
+ * that on walls. friction: mu_s. */
 typedef struct {
   double sigma, friction;
 } sd_sph_tension;
 double sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const double *whole,
-                             const double *surface, const double *carried, const double *v4, double *F);
+                             const double *surface, const double *rows, const double *k, double *F);
 
 /* Time step up to which waves of the length 2 h on the surface are resolved, 0.25 sqrt(rho h^3 / (2 pi
  * sigma)); mu_s; and the Ohnesorge number mu / sqrt(rho sigma R) of a drop. */

@@ -30,6 +30,7 @@ INLINE meeting meets(const sd_sph_film *f, scales c, row4 xi, const int *j, int 
   return m;
 }
 
+#define IS_DEEP(f, i) ((f)->deep && (f)->deep[i])
 #define EACH_PAIR(f, i) (int at = 0; at < (f)->list->count[i]; at += LANES)
 #define NEXT(f, i) ((f)->list->neighbor[i] + at)
 #define IS_WALL(k, wall) (long long) -(wall)[j[k]]
@@ -42,6 +43,7 @@ INLINE void film_sums(const sd_sph_film *f, double *sums, sd_sph_kernel kernel, 
     vec sum[8];
     for (int k = 0; k < 8; k++) sum[k] = all(0.0);
     for EACH_PAIR(f, i) {
+      if (IS_DEEP(f, i)) break;
       const int *j = NEXT(f, i);
       const meeting m = meets(f, c, xi, j, 1, kernel);
       vec W = m.W, g = m.g;
@@ -83,97 +85,143 @@ INLINE void film_wet_walls(const sd_sph_film *f, const double *contact, const do
   }
 }
 
-INLINE void film_turns(const sd_sph_film *f, const double *surface, const double *at_wall, double *rows,
-                       sd_sph_kernel kernel)
+#define WEIGHT_OF(k, surface) (surface)[4 * (size_t) j[k] + 3]
+#define VALUE_OF(k, values) (values)[j[k]]
+
+/* Of the neighbours of i those that are at the surface or of a wall, filled up with the far-away particle. */
+INLINE int skin_of(const sd_sph_film *f, const double *surface, int i, int *skin)
 {
-  const scales c = scales_of(f);
   const vec zero = all(0.0);
-  for (int i = 0; i < f->list->n; i++) {
-    const row4 xi = load4(f->x4 + 4 * (size_t) i), ni = load4(surface + 4 * (size_t) i);
-    if (!(ni[3] > 0.0)) continue;
-    const row4 shown = at_wall ? load4(at_wall + 4 * (size_t) i) : (row4){0};
-    vec sum[16];
-    for (int k = 0; k < 16; k++) sum[k] = zero;
-    for EACH_PAIR(f, i) {
-      const int *j = NEXT(f, i);
-      vec n[4];
-      gather(surface, 4, j, n);
-      if (!any(n[3] != zero)) continue;
-      const meeting m = meets(f, c, xi, j, 1, kernel);
-      vec g = m.g * larger(n[3], zero);
-      if (shown[3] > 0.0) {
-        const yes_no wall = n[3] < zero;
-        g = where(wall, m.g, g);
-        for (int d = 0; d < 3; d++) n[d] = where(wall, all(shown[d]), n[d]);
-      }
-      const vec gx = g * m.d[0], gy = g * m.d[1], gz = g * m.d[2];
-      sum[0] -= gx * m.d[0];
-      sum[1] -= gy * m.d[1];
-      sum[2] -= gz * m.d[2];
-      sum[3] -= gx * m.d[1];
-      sum[4] -= gx * m.d[2];
-      sum[5] -= gy * m.d[2];
-      for (int d = 0; d < 3; d++) {
-        const vec turn = n[d] - ni[d];
-        sum[6 + 3 * d] += turn * gx;
-        sum[7 + 3 * d] += turn * gy;
-        sum[8 + 3 * d] += turn * gz;
-      }
-    }
-    for (int part = 0; part < 16; part += 4) store4(rows + 16 * (size_t) i + part, over_lanes(sum + part));
+  int count = 0;
+  for EACH_PAIR(f, i) {
+    const int *j = NEXT(f, i);
+    count += keep(skin + count, j, bits((vec) LANEWISE(WEIGHT_OF, surface) != zero));
+  }
+  while (count % LANES) skin[count++] = f->all;
+  return count;
+}
+
+/* Adds g turn d^T and - g d d^T to N and M. */
+INLINE void add_turns(const vec d[3], const vec turn[3], vec g, vec *sum)
+{
+  const vec gx = g * d[0], gy = g * d[1], gz = g * d[2];
+  sum[0] -= gx * d[0];
+  sum[1] -= gy * d[1];
+  sum[2] -= gz * d[2];
+  sum[3] -= gx * d[1];
+  sum[4] -= gx * d[2];
+  sum[5] -= gy * d[2];
+  for (int c = 0; c < 3; c++) {
+    sum[6 + 3 * c] += turn[c] * gx;
+    sum[7 + 3 * c] += turn[c] * gy;
+    sum[8 + 3 * c] += turn[c] * gz;
   }
 }
 
-#define FIRST_OF(k, rows) (rows)[2 * (size_t) j[k]]
-#define SECOND_OF(k, rows) (rows)[2 * (size_t) j[k] + 1]
-INLINE void film_means(const sd_sph_film *f, const double *surface, double least, const double *carried,
-                       double *rows, sd_sph_kernel kernel)
+INLINE void film_turns(const sd_sph_film *f, const double *surface, const double *at_wall, const double *v4,
+                       const sd_sph_skin *skin, double *rows, sd_sph_kernel kernel)
 {
   const scales c = scales_of(f);
   const vec zero = all(0.0);
-  for (int i = 0; i < f->list->n; i++) {
-    if (!(surface[4 * (size_t) i + 3] > least)) continue;
-    const row4 xi = load4(f->x4 + 4 * (size_t) i);
-    vec sum = zero, whole = zero;
-    for EACH_PAIR(f, i) {
-      const int *j = NEXT(f, i);
-      const vec v = (vec) LANEWISE(SECOND_OF, carried);
-      if (!any(v != zero)) continue;
-      const vec k = (vec) LANEWISE(FIRST_OF, carried);
-      const vec W = meets(f, c, xi, j, 0, kernel).W * v;
-      sum += W * k;
-      whole += W;
-    }
-    rows[2 * (size_t) i] = sum_of(sum);
-    rows[2 * (size_t) i + 1] = sum_of(whole);
-  }
-}
-
-INLINE void film_rubs(const sd_sph_film *f, const double *surface, const double *v4, double factor, double *F,
-                      sd_sph_kernel kernel)
-{
-  const scales c = scales_of(f);
-  const vec zero = all(0.0);
+  size_t last = 0;
   for (int i = 0; i < f->list->n; i++) {
     const row4 xi = load4(f->x4 + 4 * (size_t) i), vi = load4(v4 + 4 * (size_t) i);
-    const double wi = surface[4 * (size_t) i + 3];
-    if (!(wi > 0.0)) continue;
-    vec sum[4] = {zero, zero, zero, zero};
-    for EACH_PAIR(f, i) {
-      const int *j = NEXT(f, i);
-      vec n[4], v[4];
-      gather(surface, 4, j, n);
-      const vec w = larger(n[3], zero);
-      if (!any(w != zero)) continue;
-      gather(v4, 4, j, v);
+    const row4 ni = load4(surface + 4 * (size_t) i);
+    skin->first[i] = last;
+    if (!(ni[3] > 0.0)) continue;
+    const row4 shown = at_wall ? load4(at_wall + 4 * (size_t) i) : (row4){0};
+    const size_t end = last + (size_t) skin_of(f, surface, i, skin->neighbor + last);
+    vec sum[SD_SPH_SKIN_SUMS];
+    for (int k = 0; k < SD_SPH_SKIN_SUMS; k++) sum[k] = zero;
+    for (; last < end; last += LANES) {
+      const int *j = skin->neighbor + last;
       const meeting m = meets(f, c, xi, j, 1, kernel);
-      vec vd = zero;
+      vec n[4], v[4], vd = zero;
+      gather(surface, 4, j, n);
+      gather(v4, 4, j, v);
+      const vec w = larger(n[3], zero), W = w * m.W;
+      vec g = w * m.g;
+      store_any(skin->weight + last, W);
+      sum[15] += W;
       for (int d = 0; d < 3; d++) vd += (vi[d] - v[d]) * m.d[d];
-      const vec along = m.g * w * vd / larger(m.r2, all(1e-300));
-      for (int d = 0; d < 3; d++) sum[d] += along * m.d[d];
+      const vec along = g * vd / larger(m.r2, all(1e-300));
+      for (int d = 0; d < 3; d++) sum[16 + d] += along * m.d[d];
+      const yes_no shows = n[3] < zero;
+      if (shown[3] > 0.0) g = where(shows, m.g, g);
+      for (int d = 0; d < 3; d++) n[d] = where(shows, all(shown[d]), n[d]) - ni[d];
+      add_turns(m.d, n, g, sum);
     }
-    const row4 total = over_lanes(sum);
-    for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] += factor * wi * xi[3] * total[d];
+    for (int part = 0; part < SD_SPH_SKIN_SUMS; part += 4)
+      store4(rows + SD_SPH_SKIN_SUMS * (size_t) i + part, over_lanes(sum + part));
+  }
+  skin->first[f->list->n] = last;
+}
+
+INLINE double weighed(const sd_sph_skin *skin, size_t from, size_t to, const double *k)
+{
+  vec sum = all(0.0);
+  for (size_t at = from; at < to; at += LANES) {
+    const int *j = skin->neighbor + at;
+    sum += load_any(skin->weight + at) * (vec) LANEWISE(VALUE_OF, k);
+  }
+  return sum_of(sum);
+}
+
+static void film_means(const sd_sph_film *f, const sd_sph_skin *skin, const double *k, double *sums)
+{
+  for (int i = 0; i < f->list->n; i++)
+    if (skin->first[i] < skin->first[i + 1])
+      sums[i] = weighed(skin, skin->first[i], skin->first[i + 1], k);
+}
+
+INLINE void film_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin, const double *k,
+                         double *rows, double *mean, sd_sph_kernel kernel)
+{
+  const scales c = scales_of(f);
+  const vec zero = all(0.0);
+  int *seen = skin->neighbor + skin->first[f->list->n];
+  for (int i = 0; i < f->list->n; i++) {
+    if (surface[4 * (size_t) i + 3] != 0.0) continue;
+    const row4 xi = load4(f->x4 + 4 * (size_t) i);
+    const int count = IS_DEEP(f, i) ? 0 : skin_of(f, surface, i, seen);
+    vec sum = zero, whole = zero;
+    for (int at = 0; at < count; at += LANES) {
+      const int *j = seen + at;
+      const vec w = larger((vec) LANEWISE(WEIGHT_OF, surface), zero);
+      const vec W = meets(f, c, xi, j, 0, kernel).W * w;
+      whole += W;
+      sum += W * (vec) LANEWISE(VALUE_OF, k);
+    }
+    const double around = sum_of(whole);
+    rows[SD_SPH_SKIN_SUMS * (size_t) i + 15] = around;
+    mean[i] = around > 1e-9 ? sum_of(sum) / around : 0.0;
+  }
+}
+
+/* Makes one tree of those of i, which is `mine`, and j, if they are in reach; returns its root. */
+INLINE int link(const sd_sph_film *f, int *parent, int i, int mine, int j)
+{
+  const double *x = f->x4 + 4 * (size_t) i, *y = f->x4 + 4 * (size_t) j, reach = 2.0 * f->surface->h;
+  const double d[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+  if (!sd_sph_in_drop(f, j) || !(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach)) return mine;
+  const int other = sd_sph_root_of_drop(parent, j);
+  if (other < mine) return parent[mine] = other;
+  parent[other] = mine;
+  return mine;
+}
+
+#define PARENT_OF(k, parent) (parent)[j[k]]
+static void film_links(const sd_sph_film *f, int *parent)
+{
+  for (int i = 0; i < f->list->n; i++) {
+    if (!sd_sph_in_drop(f, i)) continue;
+    int mine = sd_sph_root_of_drop(parent, i);
+    for (int at = 0; at < f->list->own[i]; at += LANES) {
+      const int *j = NEXT(f, i);
+      unsigned others = bits((yes_no) LANEWISE(PARENT_OF, parent) != same(mine));
+      for (int k = 0; others; k++, others >>= 1)
+        if (others & 1u) mine = link(f, parent, i, mine, j[k]);
+    }
   }
 }
 
@@ -204,21 +252,18 @@ static void all_wet_walls(const sd_sph_film *f, const double *contact, const dou
   BY_KERNEL(f, film_wet_walls, contact, sums, more);
 }
 
-static void all_turns(const sd_sph_film *f, const double *surface, const double *at_wall, double *rows)
+static void all_turns(const sd_sph_film *f, const double *surface, const double *at_wall, const double *v4,
+                      const sd_sph_skin *skin, double *rows)
 {
-  BY_KERNEL(f, film_turns, surface, at_wall, rows);
+  BY_KERNEL(f, film_turns, surface, at_wall, v4, skin, rows);
 }
 
-static void all_means(const sd_sph_film *f, const double *surface, double least, const double *carried,
-                      double *rows)
+static void all_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin, const double *k,
+                        double *rows, double *mean)
 {
-  BY_KERNEL(f, film_means, surface, least, carried, rows);
+  BY_KERNEL(f, film_inwards, surface, skin, k, rows, mean);
 }
 
-static void all_rubs(const sd_sph_film *f, const double *surface, const double *v4, double factor, double *F)
-{
-  BY_KERNEL(f, film_rubs, surface, v4, factor, F);
-}
-
-const sd_sph_film_loops SD_KERNELS(sd_sph_film_loops) = {all_sums, all_wet_walls, all_turns, all_means, all_rubs};
+const sd_sph_film_loops SD_KERNELS(sd_sph_film_loops) = {all_sums,   all_wet_walls, all_turns,
+                                                         film_means, all_inwards,   film_links};
 #endif

@@ -17,7 +17,7 @@ static void middle_of(scene *s, step *t, double least)
   sd_sph_pack_v(N, s->v, s->rho, s->v4);
   sd_sph_pack_volumes(&s->model, &s->p, s->rho, s->x4);
   sum_middle(s, t->sums);
-  const sd_sph_closing closing = {N, t->sums, flows, 1, least, t->rate, t->order, t->kick};
+  const sd_sph_closing closing = {N, t->sums, flows, 1, least, 0.0, t->rate, t->order, t->kick};
   t->stops = sd_sph_close(&s->model, &s->p, &closing);
   s->p.order = t->order;
 }

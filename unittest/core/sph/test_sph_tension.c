@@ -1,5 +1,6 @@
 /* Surface tension: what a plane hides, the curvature of circles, spheres and jets, the normal at a wall, and
  * what is kept. */
+#include "sd_sph_deep.h"
 #include "sd_sph_drops.h"
 #include "sd_sph_tension.h"
 
@@ -13,9 +14,11 @@ enum { MOST = 6000 };
 typedef struct {
   int n, wall[MOST + 1], *neighbor[MOST], own[MOST], count[MOST], *pool;
   double x4[4 * (MOST + 1)], v4[4 * (MOST + 1)];
-  double sums[8 * MOST], beside[8 * MOST], contact[4 * (MOST + 1)], whole[4 * MOST], rows[16 * MOST];
+  double sums[8 * MOST], beside[8 * MOST], contact[4 * (MOST + 1)], whole[4 * MOST];
   double surface[4 * (MOST + 1)], at_wall[4 * MOST], kappa[MOST + 1], F[3 * MOST];
-  double carried[2 * (MOST + 1)], next[2 * MOST];
+  double rows[SD_SPH_SKIN_SUMS * MOST], k[MOST];
+  size_t first[MOST + 1];
+  sd_sph_skin skin;
   sd_sph_surface plane;
   sd_sph_both list;
   sd_sph_film film;
@@ -27,6 +30,8 @@ static drop *begin(int dimension, double h)
 {
   drop *s = &all_of_it;
   free(s->pool);
+  free(s->skin.neighbor);
+  free(s->skin.weight);
   memset(s, 0, sizeof(*s));
   sd_sph_surface_make(SD_SPH_WENDLAND, dimension, h, &s->plane);
   return s;
@@ -53,10 +58,11 @@ static void find_neighbours(drop *s, int walls)
     size_t size = 0;
     for (int i = 0; i < s->n; i++) {
       if (round) s->neighbor[i] = s->pool + size;
-      s->count[i] = 0;
+      s->count[i] = s->own[i] = 0;
       for (int j = 0; j < s->n; j++)
         if (j != i && distance(s, i, j) < 2.0 * s->plane.h) {
           if (round) s->pool[size + s->count[i]] = j;
+          s->own[i] += j < i;
           s->count[i]++;
         }
       while (s->count[i] % SD_SPH_LANES) {
@@ -69,7 +75,7 @@ static void find_neighbours(drop *s, int walls)
   }
   for (int d = 0; d < 3; d++) s->x4[4 * s->n + d] = 1e10;
   s->list = (sd_sph_both){s->n, s->neighbor, s->own, s->count};
-  s->film = (sd_sph_film){&s->plane, &s->list, s->n, s->x4, walls ? s->wall : NULL};
+  s->film = (sd_sph_film){&s->plane, &s->list, s->n, s->x4, walls ? s->wall : NULL, NULL, NULL};
 }
 
 /* Up to the curvatures; angle: of all walls. */
@@ -87,19 +93,10 @@ static void look(drop *s, double angle)
   }
   sd_sph_film_normals(&s->film, s->sums, walls ? s->beside : NULL, s->whole, s->surface,
                       walls ? s->at_wall : NULL);
-  sd_sph_film_curvatures(&s->film, s->whole, s->surface, walls ? s->at_wall : NULL, s->rows, s->kappa);
-}
-
-static void carry(drop *s, int rounds)
-{
-  for (int i = 0; i < s->n; i++) {
-    s->carried[2 * i] = s->kappa[i];
-    s->carried[2 * i + 1] = fmax(s->surface[4 * i + 3], 0.0);
-  }
-  while (rounds-- > 0) {
-    sd_sph_film_carry(&s->film, s->surface, s->kappa, s->carried, s->next);
-    memcpy(s->carried, s->next, sizeof(double) * 2 * (size_t) s->n);
-  }
+  const size_t room = sd_sph_skin_size(&s->film, s->surface);
+  s->skin = (sd_sph_skin){s->first, malloc(sizeof(int) * room), malloc(sizeof(double) * room)};
+  sd_sph_film_curvatures(&s->film, s->whole, s->surface, walls ? s->at_wall : NULL, s->v4, &s->skin, s->rows,
+                         s->kappa);
 }
 
 /* Rings of particles of one volume, as a drop at rest has them; 2-D. */
@@ -201,18 +198,72 @@ static void means_keep_a_uniform_curvature(void **state)
   double mean[MOST], ks[MOST];
   int carried = 0;
   for (int i = 0; i < s->n; i++) s->kappa[i] = 0.7;
-  carry(s, 0);
-  sd_sph_film_means(&s->film, s->surface, s->carried, s->rows, mean);
+  sd_sph_film_means(&s->film, s->surface, &s->skin, s->rows, s->kappa, mean);
   sd_sph_film_sharpen(&s->film, s->kappa, mean, mean, NULL, ks);
   for (int i = 0; i < s->n; i++)
     if (s->surface[4 * i + 3] > 0.0) CHECK_NEAR(ks[i], 0.7 * (1.0 + 0.16 * 0.2 * 0.7), 1e-14);
-  carry(s, 2);
+  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->rows, s->kappa, s->k);
   for (int i = 0; i < s->n; i++)
-    if (s->carried[2 * i + 1] > 0.0) {
-      CHECK_NEAR(s->carried[2 * i], 0.7, 1e-14);
+    if (s->k[i] != 0.0) {
+      CHECK_NEAR(s->k[i], 0.7, 1e-14);
       carried += !(s->surface[4 * i + 3] > 0.0);
     }
   assert_true(carried > 50);    // of 314, most of them inside
+}
+
+/* What is deep sees nobody who is marked, and most of the inside is; nothing changes but what noise is there. */
+static void the_deep_is_out_of_reach_and_bears_nothing(void **state)
+{
+  (void) state;
+  static char inside[MOST], marked[MOST], grid[SD_SPH_DEEP_CELLS(MOST)], deep[MOST];
+  static double F[3 * MOST];
+  drop *s = begin(2, 0.12);
+  disk(s, 1.5, 0.06, 0.3, -7.0);
+  find_neighbours(s, 0);
+  look(s, 0.0);
+  const sd_sph_tension how = {2.5, 0.1};
+  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->rows, s->kappa, s->k);
+  const double area = sd_sph_tension_forces(&s->film, &how, s->whole, s->surface, s->rows, s->k, F);
+  for (int i = 0; i < s->n; i++) marked[i] = !(inside[i] = !(s->surface[4 * i + 3] > 0.0));
+  sd_sph_find_deep(s->n, s->n, s->x4, marked, 0.24, grid, deep);
+  int found = 0;
+  for (int i = 0; i < s->n; i++) {
+    found += deep[i];
+    for (int j = 0; j < s->n && deep[i]; j++) assert_true(!marked[j] || distance(s, i, j) > 0.24);
+  }
+  assert_true(found > s->n / 5);
+  s->film.inside = inside;
+  s->film.deep = deep;
+  free(s->skin.neighbor);
+  free(s->skin.weight);
+  look(s, 0.0);
+  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->rows, s->kappa, s->k);
+  CHECK_NEAR(sd_sph_tension_forces(&s->film, &how, s->whole, s->surface, s->rows, s->k, s->F), area, 1e-13);
+  for (int i = 0; i < 3 * s->n; i++) CHECK_NEAR(s->F[i], F[i], 1e-14);
+}
+
+/* <k> of a particle is the sum over its neighbours, one by one. */
+static void means_are_sums_over_the_surface(void **state)
+{
+  (void) state;
+  uint64_t seed = 11;
+  drop *s = begin(2, 0.2);
+  disk(s, 1.0, 0.1, 0.0, 0.0);
+  find_neighbours(s, 0);
+  look(s, 0.0);
+  double mean[MOST];
+  for (int i = 0; i < s->n; i++) s->kappa[i] = uniform(&seed, 1.0, 2.0);
+  sd_sph_film_means(&s->film, s->surface, &s->skin, s->rows, s->kappa, mean);
+  for (int i = 0; i < s->n; i++) {
+    double sum = 0.0, whole = 0.0;
+    for (int j = 0; j < s->n; j++) {
+      const double w = s->surface[4 * j + 3] * s->x4[4 * j + 3] *
+          sd_sph_W(SD_SPH_WENDLAND, 2, distance(s, i, j), 0.2);
+      sum += w * s->kappa[j];
+      whole += w;
+    }
+    CHECK_NEAR(mean[i], s->surface[4 * i + 3] > 0.0 ? sum / whole : 0.0, 1e-13);
+  }
 }
 
 /* Then sigma kappa is a pressure: the force is that of - P on all particles, and a uniform pressure of the fluid
@@ -224,10 +275,10 @@ static void a_uniform_curvature_pushes_as_a_pressure(void **state)
   disk(s, 1.0, 0.1, 0.0, 0.0);
   find_neighbours(s, 0);
   look(s, 0.0);
-  for (int i = 0; i < s->n; i++) s->kappa[i] = 0.7;
-  carry(s, 2);
+  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->rows, s->kappa, s->k);
+  for (int i = 0; i < s->n; i++) s->k[i] = 0.7;
   const sd_sph_tension how = {2.5, 0.0};
-  const double area = sd_sph_tension_forces(&s->film, &how, s->whole, s->surface, s->carried, s->v4, s->F);
+  const double area = sd_sph_tension_forces(&s->film, &how, s->whole, s->surface, s->rows, s->k, s->F);
   CHECK_NEAR(area, 6.283, 0.4);
   for (int i = 0; i < s->n; i++) {
     double F[2] = {0.0, 0.0};
@@ -247,14 +298,15 @@ static void friction_of_the_surface_keeps_momentum_and_its_moment_and_takes_ener
   uint64_t seed = 3;
   drop *s = begin(2, 0.2);
   disk(s, 1.0, 0.1, 0.0, 0.0);
-  find_neighbours(s, 0);
-  look(s, 0.0);
-  memset(s->carried, 0, sizeof(s->carried));
-  double sum[3] = {0.0}, size = 0.0, power = 0.0;
   for (int i = 0; i < s->n; i++)
     for (int d = 0; d < 2; d++) s->v4[4 * i + d] = uniform(&seed, -1.0, 1.0);
+  find_neighbours(s, 0);
+  look(s, 0.0);
+  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->rows, s->kappa, s->k);
+  memset(s->k, 0, sizeof(s->k));
+  double sum[3] = {0.0}, size = 0.0, power = 0.0;
   const sd_sph_tension how = {2.5, 0.3};
-  sd_sph_tension_forces(&s->film, &how, s->whole, s->surface, s->carried, s->v4, s->F);
+  sd_sph_tension_forces(&s->film, &how, s->whole, s->surface, s->rows, s->k, s->F);
   for (int i = 0; i < s->n; i++) {
     const double *x = s->x4 + 4 * i, *F = s->F + 3 * i;
     sum[0] += F[0];
@@ -385,6 +437,8 @@ int main(void)
       cmocka_unit_test(a_circle_has_the_curvature_of_its_edge),
       cmocka_unit_test(a_sphere_has_two_over_its_radius_and_a_jet_one),
       cmocka_unit_test(means_keep_a_uniform_curvature),
+      cmocka_unit_test(means_are_sums_over_the_surface),
+      cmocka_unit_test(the_deep_is_out_of_reach_and_bears_nothing),
       cmocka_unit_test(a_uniform_curvature_pushes_as_a_pressure),
       cmocka_unit_test(friction_of_the_surface_keeps_momentum_and_its_moment_and_takes_energy),
       cmocka_unit_test(a_wedge_with_its_contact_angle_is_plane),
