@@ -14,7 +14,12 @@ function(core_test_program name model file)
   add_executable(${name} ${file})
   target_include_directories(${name} PRIVATE ${cmocka_include} ${tests} ${tests}/${model})
   target_compile_definitions(${name} PRIVATE TEST_DATA="${CMAKE_CURRENT_SOURCE_DIR}/../unittest/data/")
-  target_compile_options(${name} PRIVATE -Wall -Wextra -g)
+  target_compile_options(${name} PRIVATE -Wall -Wextra)
+  if(STOKESDYN_SANITIZE)
+    target_compile_definitions(${name} PRIVATE SD_SANITIZED)    # smaller scenes (check.h)
+  else()
+    target_compile_options(${name} PRIVATE -g)
+  endif()
   target_link_libraries(${name} PRIVATE ${ARGN} stokesdyn_${model} ${cmocka_library})
 endfunction()
 
@@ -102,8 +107,9 @@ set_target_properties(test_two_sphere_exact PROPERTIES EXCLUDE_FROM_ALL ON)
 add_test(NAME two_sphere_series COMMAND ${table}/check.sh)
 
 # What takes longest begins first, so that all cores end together; with and without sanitizers.
-set(longest ladder ewald_levels waves ewald_ranks multiblob_periodic clump_exact ewald_wall clusters ewald_open lubrication
-  simd multiblob_clusters field vans_wall precondition_rotation tie multiblob_loop solve clump multiblob_noise noise)
+set(longest ladder drift ewald_levels multiblob_noise_periodic ewald_ranks slab simd field multiblob_periodic
+  precondition_rotation clusters slab_tables waves multiblob_clusters multiblob_noise lubrication ewald_wall
+  solve ewald_open multiblob_loop clump_exact vans_wall tie clump noise)
 list(LENGTH longest cost)
 foreach(name ${longest})
   if(TEST test_${name})

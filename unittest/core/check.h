@@ -20,6 +20,14 @@
                v_ - e_);                                                                   \
   } while (0)
 
+/* How much a test goes through: with sanitizers, which take several times as long, as much as leads
+ * through the same code */
+#ifdef SD_SANITIZED
+#define CHECK_SIZE(whole, sanitized) (sanitized)
+#else
+#define CHECK_SIZE(whole, sanitized) (whole)
+#endif
+
 /* Uniform in (lo, hi), the same on every machine. */
 static inline double uniform(uint64_t *seed, double lo, double hi)
 {

@@ -111,6 +111,7 @@ def pytest_configure(config):
                  "ranks(n): needs n ranks; set for all whose code names them (ranks_of)", "loader: of stokesdynplugin.so itself",
                  "nothing_to_test_if(condition, reason): is left out, and the reason told, where the condition holds"):
         config.addinivalue_line("markers", line)
+    config.option.loadscopereorder = False      # newer pytest-xdist would begin with the files of most tests, which are not those of LONG
 
 
 # Files that take long and come late in the alphabet: they begin first, so that no core waits for them in the end.

@@ -4,6 +4,7 @@ a test may ask for.
 With Open MPI that is any number: ranks that wait leave their core to others. Those of MPICH spin, so that on more ranks than there are
 cores a scene of a second takes minutes: there are as many as cores at most, of one test at a time; other tests do what they do on one
 rank meanwhile. A LAMMPS without MPI has one."""
+import atexit
 import functools
 import os
 import re
@@ -16,8 +17,21 @@ import tempfile
 FAMILIES = {"Open MPI": (["mpirun.openmpi", "mpirun"], "Open MPI|OpenRTE", ["--oversubscribe"]),
             "MPICH": (["mpirun.mpich", "mpiexec.hydra", "mpirun"], "HYDRA|MPICH", [])}
 
+# Seconds after which a program is taken for one that hangs. What takes two where nothing else runs takes a minute where ten others want
+# the core, and waits for the ranks of another test.
+PATIENCE = 900
+
 # True while a test runs that nobody knows to use several ranks (conftest.py): it would be missing where these are selected
 undeclared = False
+
+
+@functools.lru_cache(maxsize=None)
+def scratch():
+    """Where mpirun keeps what its ranks share. In one folder for all, one that begins trips over what another, in another process of
+    tests, is just taking away."""
+    folder = tempfile.mkdtemp(prefix="sd")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
 
 
 def environment():
@@ -29,7 +43,7 @@ def environment():
     env = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI_", "LAMMPS_PLUGIN"))}
     if os.getuid() == 0:
         env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    env.update(OMP_NUM_THREADS="1", OMPI_MCA_hwloc_base_binding_policy="none", OMPI_MCA_mpi_yield_when_idle="1",
+    env.update(OMP_NUM_THREADS="1", TMPDIR=scratch(), OMPI_MCA_hwloc_base_binding_policy="none", OMPI_MCA_mpi_yield_when_idle="1",
                OMPI_MCA_pml="ob1", MPIR_CVAR_CH4_PROGRESS_THROTTLE="1", MPIR_CVAR_CH4_PROGRESS_THROTTLE_NO_PROGRESS_COUNT="512")
     return env
 

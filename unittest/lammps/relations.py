@@ -72,11 +72,11 @@ class Result:
         self.error, self.values = error, values or {}
 
 
-def run(scene, frame, how, timeout=300):
+def run(scene, frame, how):
     with tempfile.TemporaryDirectory() as folder:
         for k, (ranks, lines) in enumerate(commands(scene, frame, **how)):
             try:
-                done = system.lmp(folder, lines, ranks, timeout=timeout, succeed=False)
+                done = system.lmp(folder, lines, ranks, succeed=False)
             except (AssertionError, OSError) as error:
                 return Result(f"ERROR: {error}")
             says = re.findall("^ERROR.*", done.log + "\n" + done.text, re.M)

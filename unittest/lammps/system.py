@@ -9,7 +9,7 @@ import subprocess
 
 import numpy as np
 
-from host import environment, mpirun
+from host import PATIENCE, environment, mpirun
 
 DENSITY = 1.7
 PLUGIN = "stokesdynplugin.so"
@@ -219,7 +219,7 @@ class Finished:
         self.code, self.text, self.log = code, text, log
 
 
-def lmp(folder, lines, ranks=1, timeout=60, succeed=True):
+def lmp(folder, lines, ranks=1, timeout=PATIENCE, succeed=True):
     """Run lmp on the lines; text: all it printed. A run that does not end within the timeout fails the test."""
     script, log = os.path.join(str(folder), "in.test"), os.path.join(str(folder), "log.test")
     with open(script, "w") as out:
@@ -248,13 +248,13 @@ def lmp(folder, lines, ranks=1, timeout=60, succeed=True):
     return finished
 
 
-def lmp_in_turn(folder, inputs, ranks=1, timeout=60):
-    """Several inputs (lists of lines) in one start of lmp, each after a `clear`: the log of each; timeout: of one. mpirun takes as long to
-    start as most scenes to run."""
+def lmp_in_turn(folder, inputs, ranks=1):
+    """Several inputs (lists of lines) in one start of lmp, each after a `clear`: the log of each. mpirun takes as long to start as most
+    scenes to run."""
     lines = []
     for k, one in enumerate(inputs):
         lines += ["clear"] * (k > 0) + [f'print "input {k} of several"'] + list(one)
-    return re.split(r"^input \d+ of several$", lmp(folder, lines, ranks, timeout * len(inputs)).log, flags=re.M)[1:]
+    return re.split(r"^input \d+ of several$", lmp(folder, lines, ranks).log, flags=re.M)[1:]
 
 
 def dump_lines(path, every=1, columns="x y z vx vy vz f_drag[1] f_drag[2] f_drag[3]", name="out"):

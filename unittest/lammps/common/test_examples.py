@@ -8,12 +8,14 @@ import sys
 
 import pytest
 
-from system import environment
+from host import PATIENCE, environment
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[3] / "examples"
-QUICK = ["cfd_coupling", "clump_resistance", "dense_settling", "first_look", "fixed_bed", "landing", "notebook", "python_clump",
-         "rolling", "slit_bead", "squeeze", "tumbling", "vans_drag", "vans_fluid", "vans_fluidised", "wall_shear"]
-BRIEF = ["active", "fibres", "hele_shaw", "magnetic", "roller_layer", "settling_layer", "shapes", "ship", "swimmers", "vans_sorting"]    # by their option --quick
+QUICK = ["clump_resistance", "dense_settling", "first_look", "fixed_bed", "landing", "notebook", "python_clump", "rolling", "slit_bead",
+         "squeeze", "vans_drag", "vans_fluid", "vans_fluidised", "wall_shear"]
+# by their option --quick
+BRIEF = ["active", "cfd_coupling", "fibres", "hele_shaw", "magnetic", "roller_layer", "settling_layer", "shapes", "ship", "swimmers",
+         "tumbling", "vans_sorting"]
 
 
 # how a warning about a command of LAMMPS beside ours begins (common/neighbours.h)
@@ -35,7 +37,7 @@ def test_every_figure_of_an_example_holds(name, tmp_path):
     env = dict(environment(), PYTHONDONTWRITEBYTECODE="1", MPLCONFIGDIR=str(tmp_path / "matplotlib"))
     command = [sys.executable, str(EXAMPLES / name / "run.py"), "--out", str(tmp_path / "out")] + ["--quick"] * (name in BRIEF)
     run = subprocess.run(command, env=env, cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                         stderr=subprocess.STDOUT, text=True, timeout=600)
+                         stderr=subprocess.STDOUT, text=True, timeout=PATIENCE)
     assert run.returncode == 0, run.stdout[-3000:]
     assert not re.search("^MISSED", run.stdout, re.M), run.stdout[-3000:]
     assert len(re.findall("^ok  ", run.stdout, re.M)) >= 5, run.stdout[-3000:]

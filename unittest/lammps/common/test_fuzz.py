@@ -1,17 +1,20 @@
 """Commands by grammar and mutation (fuzz.py): no crash, no hang, nothing accepted that the pages call wrong, nothing refused that
 they call right, and every error names its command and keyword."""
+import select
+
 import pytest
 
 import fuzz
 import fuzz_grammar
 import fuzz_stokes
 import fuzz_vans
+from host import PATIENCE
 
 STOKES = "visc 1 cut_off_distance inf"
 
 
 def test_300_commands_do_what_the_pages_say():
-    found = fuzz.run(300, seed=20261122)
+    found = fuzz.run(300, seed=20261122, timeout=PATIENCE)
     assert sum(found.count.values()) == 300
     assert found.defects == 0, found.table() + found.examples(3)
 
@@ -62,13 +65,26 @@ def test_an_outcome_is_called_by_its_name(words, result, wanted):
 
 
 def test_a_worker_that_dies_is_a_crash_and_the_next_case_goes_on(tmp_path, monkeypatch):
-    """Case 1 kills its worker, case 3 sleeps."""
-    script = tmp_path / "worker.py"
+    """Case 1 kills its worker, case 3 sleeps: no other is taken for one that hangs, however long it takes to begin."""
+    script, asleep = tmp_path / "worker.py", tmp_path / "asleep"
     script.write_text("import os, sys, time, json\n"
                       "for k in range(int(sys.argv[3]), int(sys.argv[4])):\n"
                       "    if k == 1: os.abort()\n"
-                      "    if k == 3: time.sleep(60)\n"
+                      f"    if k == 3: open({str(asleep)!r}, 'w').close(); time.sleep(600)\n"
                       "    print('@' + json.dumps({'number': k}), flush=True)\n")
+
+    class Patient:
+        @staticmethod
+        def select(read, write, error, timeout):
+            while True:
+                sleeps = asleep.exists()
+                ready = select.select(read, write, error, timeout if sleeps else 0.05)
+                if sleeps and not ready[0]:
+                    asleep.unlink()
+                if sleeps or ready[0]:
+                    return ready
+
+    monkeypatch.setattr(fuzz, "select", Patient)
     monkeypatch.setattr(fuzz, "__file__", str(script))
     results = list(fuzz.Worker(0, 6, 1, 2.0, str(tmp_path)).results(0))
     assert [r["number"] for r in results] == list(range(6))

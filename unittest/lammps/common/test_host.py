@@ -29,6 +29,11 @@ def test_ranks_of_mpich_wait_for_those_of_another_test(mpich, tmp_path, monkeypa
     assert (tmp_path / "said").read_text().split() == ["begins", "ends"] * 3
 
 
+def test_mpirun_has_a_folder_of_this_process():
+    folder = host.environment()["TMPDIR"]
+    assert os.path.isdir(folder) and folder == host.environment()["TMPDIR"] and folder != host.tempfile.gettempdir()
+
+
 def test_without_mpi_there_is_one(monkeypatch):
     monkeypatch.setattr(host, "family", lambda: "")
     assert host.allowed(1, 2) == [1] and host.at_most(4) == 1 and host.mpirun(1) == []

@@ -10,7 +10,7 @@ import sys
 
 import pytest
 
-from system import environment
+from host import PATIENCE, environment
 
 TOP = pathlib.Path(__file__).resolve().parents[3]
 DOC = TOP / "PKG-STOKESDYN" / "doc"
@@ -49,7 +49,7 @@ def paste(commands, clone):
     env = {key: value for key, value in environment().items() if not key.startswith(("LAMMPS_", "LD_", "PYTHONPATH"))}
     env["PATH"] = os.path.dirname(sys.executable) + ":" + env["PATH"]      # the python3 that has numpy
     done = subprocess.run(["bash", "-e"], input=commands, cwd=clone, env=dict(env, MPLCONFIGDIR=str(clone)), stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, timeout=300)
+                          stderr=subprocess.STDOUT, text=True, timeout=PATIENCE)
     assert done.returncode == 0, done.stdout[-3000:]
     return done.stdout
 

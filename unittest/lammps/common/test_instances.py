@@ -5,7 +5,7 @@ import textwrap
 
 import pytest
 
-from system import environment
+from host import PATIENCE, environment
 
 pytestmark = pytest.mark.loader
 HEAD = """
@@ -134,5 +134,5 @@ CASES = {
 @pytest.mark.parametrize("case", CASES)
 def test_each_lammps_of_a_process_that_loads_the_plugin_has_all_styles(tmp_path, case):
     script = HEAD + textwrap.dedent(CASES[case]) + "\nprint('right to the end')\n"
-    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env=environment(), capture_output=True, text=True, timeout=120)
+    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env=environment(), capture_output=True, text=True, timeout=PATIENCE)
     assert done.returncode == 0 and "right to the end" in done.stdout, done.stdout + done.stderr

@@ -11,14 +11,18 @@ from system import Spheres, input_lines, lmp
 SCARCE = pathlib.Path(__file__).resolve().parents[1] / "scarce_memory.cpp"
 
 
-@pytest.fixture
-def scarce(tmp_path, monkeypatch):
-    """scarce(MALLOC_LIMIT=bytes): what lmp is started with from now on"""
-    library = tmp_path / "libscarce.so"
+@pytest.fixture(scope="module")
+def scarce_memory(tmp_path_factory):
+    library = tmp_path_factory.mktemp("scarce") / "libscarce.so"
     subprocess.run(["c++", "-O1", "-fPIC", "-shared", "-o", library, SCARCE], check=True)
+    return str(library)
 
+
+@pytest.fixture
+def scarce(scarce_memory, monkeypatch):
+    """scarce(MALLOC_LIMIT=bytes): what lmp is started with from now on"""
     def limit(**limits):
-        monkeypatch.setenv("LD_PRELOAD", str(library))
+        monkeypatch.setenv("LD_PRELOAD", scarce_memory)
         for name, value in limits.items():
             monkeypatch.setenv(name, str(value))
     return limit
@@ -30,7 +34,7 @@ def test_blas_that_finds_no_room_says_so(tmp_path, scarce, ranks):
     lines = input_lines(Spheres([(0, 0, 0), (0, 0, 2)], molecule=1), "clumps_only yes visc 1 rigid_clumps yes shell 12", str(tmp_path / "data"),
                         comm="comm_modify cutoff 9")
     scarce(MALLOC_LIMIT=130000000)
-    run = lmp(tmp_path, lines + ["run 0"], ranks, timeout=20, succeed=False)
+    run = lmp(tmp_path, lines + ["run 0"], ranks, succeed=False)
     assert run.code != 0 and "Pair style stokes_dynamics: out of memory: linear algebra (BLAS) needs 0.14 GB of address space" in run.text
 
 
@@ -45,7 +49,7 @@ def test_memory_of_cpp_that_is_not_there_is_told(tmp_path, scarce, style, ranks)
     lines = input_lines(Spheres(x), f"cut_off_distance 4 taper wendland visc 1 {words}", str(tmp_path / "data"), fix=False,
                         before_pair="variable u atom 0.1*z")
     scarce(NEW_LIMIT=300000)
-    run = lmp(tmp_path, lines + fixes + ["run 0"], ranks, timeout=20, succeed=False)
+    run = lmp(tmp_path, lines + fixes + ["run 0"], ranks, succeed=False)
     assert run.code != 0 and re.search(message, run.text), run.text[-1500:]
     assert "terminate called" not in run.text and "more ranks" in run.text
 
@@ -57,7 +61,7 @@ def test_one_rank_without_memory_for_a_shape_ends_all(tmp_path, scarce, scarce_r
     x = np.random.default_rng(3).uniform(0, 100, (20000, 3))
     lines = input_lines(Spheres(x, molecule=1), "clumps_only yes visc 1 rigid_clumps yes", str(tmp_path / "data"), fix=False)
     scarce(MALLOC_LIMIT=480000, MALLOC_MOST=480000, SCARCE_RANK=scarce_rank)    # three numbers for each sphere of a shape
-    run = lmp(tmp_path, lines + ["run 0"], ranks=2, timeout=20, succeed=False)
+    run = lmp(tmp_path, lines + ["run 0"], ranks=2, succeed=False)
     assert run.code != 0 and "Pair style stokes_dynamics: keyword rigid_clumps: out of memory" in run.text, run.text[-1500:]
 
 
@@ -86,7 +90,7 @@ def test_a_compute_without_memory_tells_it(tmp_path, scarce):
     lines = [line.format(n=19) for line in ALONE] + ["fix eos all sph/pressure Tait 14.3 1 7", "compute s all sph/surface/atom", "run 0",
                                                     "compute most all reduce max c_s[1]", "thermo_style custom step c_most", "run 0"]
     scarce(NEW_LIMIT=40 * 20**3)
-    run = lmp(tmp_path, lines, timeout=30, succeed=False)
+    run = lmp(tmp_path, lines, succeed=False)
     assert run.code != 0 and "Compute sph/surface/atom: out of memory on this rank" in run.text, run.text[-1500:]
     assert "terminate called" not in run.text
 
@@ -97,7 +101,7 @@ def test_one_rank_without_memory_for_a_fix_ends_all(tmp_path, scarce, scarce_ran
     """The constructor fails in its first rows, before LAMMPS has been told of them."""
     scarce(CALLOC_LIMIT=8 * 16385, CALLOC_MOST=8 * 16385, SCARCE_RANK=scarce_rank)    # a number for each atom that LAMMPS has room for
     lines = [line.format(n=3) for line in ALONE] + ["fix eos all sph/pressure Tait 14.3 1 7", "run 0"]
-    run = lmp(tmp_path, lines, ranks=2, timeout=30, succeed=False)
+    run = lmp(tmp_path, lines, ranks=2, succeed=False)
     assert run.code != 0 and "Fix sph/pressure: out of memory on this rank" in run.text, run.text[-1500:]
     assert "terminate called" not in run.text
 
@@ -109,7 +113,7 @@ def test_one_rank_without_memory_for_a_stream_ends_all(tmp_path, scarce, scarce_
     scarce(CALLOC_LIMIT=18 * 8 * slices, CALLOC_MOST=18 * 8 * (slices + 2), SCARCE_RANK=scarce_rank)
     lines = ["units si", "atom_style sphere", "plugin load stokesdynplugin.so", "region box block 0 1 0 1 0 1", "create_box 1 box",
              f"fix h all hydro/vans 1 mesh {slices} 1e-4 0 fluid 1000 0.001 gravity 0.5 0 -9.8"]
-    run = lmp(tmp_path, lines, ranks=2, timeout=30, succeed=False)
+    run = lmp(tmp_path, lines, ranks=2, succeed=False)
     assert run.code != 0 and f"Fix hydro/vans: out of memory for {slices} slices" in run.text, run.text[-1500:]
 
 
@@ -120,7 +124,7 @@ def test_one_rank_without_memory_for_a_shell_ends_all(tmp_path, scarce, scarce_r
     lines = input_lines(Spheres([(0, 0, 0), (0, 0, 3)]), "cut_off_distance inf visc 1 multiblob 42", str(tmp_path / "data"))
     size = 8 * (3 * 42)**2    # the inverse mobility of its points
     scarce(MALLOC_LIMIT=size, MALLOC_MOST=size, SCARCE_RANK=scarce_rank)
-    run = lmp(tmp_path, lines + ["run 0"], ranks=2, timeout=40, succeed=False)
+    run = lmp(tmp_path, lines + ["run 0"], ranks=2, succeed=False)
     assert run.code != 0 and "keyword multiblob: '42': out of memory" in run.text, run.text[-1500:]
 
 
@@ -133,7 +137,7 @@ def test_one_rank_without_memory_within_a_solve_ends_all(tmp_path, scarce, fix, 
     x = 3.0 * np.stack(np.meshgrid(*3 * [np.arange(4)]), axis=-1).reshape(-1, 3)[:n]
     lines = input_lines(Spheres(x, v=(0, 0, 1)), "cut_off_distance inf far_field direct visc 1 multiblob 12", str(tmp_path / "data"), fix=False)
     scarce(NEW_LIMIT=8 * 36 * n, NEW_MOST=8 * 36 * n, SCARCE_RANK=scarce_rank)
-    run = lmp(tmp_path, lines + ["fix down all addforce 0 0 -1", fix, "run 0"], ranks=2, timeout=40, succeed=False)
+    run = lmp(tmp_path, lines + ["fix down all addforce 0 0 -1", fix, "run 0"], ranks=2, succeed=False)
     assert run.code != 0 and re.search("Pair style stokes_dynamics: step 0: .*out of memory", run.text), run.text[-1500:]
 
 
@@ -141,5 +145,5 @@ def test_multiblob_asks_for_the_room_of_blas_first(tmp_path, scarce):
     """At the command, which makes the shell by linear algebra; there OpenBLAS tried for ever."""
     lines = input_lines(Spheres([(0, 0, 0)]), "cut_off_distance inf visc 1 multiblob 12", str(tmp_path / "data"), fix=False)
     scarce(MALLOC_LIMIT=130000000)
-    run = lmp(tmp_path, lines, timeout=40, succeed=False)
+    run = lmp(tmp_path, lines, succeed=False)
     assert run.code != 0 and "linear algebra (BLAS) needs 0.14 GB" in run.text

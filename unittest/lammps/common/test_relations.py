@@ -8,6 +8,7 @@ import pytest
 import lives
 import relations
 import relations_changes as changes
+from host import PATIENCE
 from relations_frame import KINDS, Frame, turned
 
 SEED, GROUPS, EACH = 41, 20, 3
@@ -42,7 +43,7 @@ def test_a_force_that_does_not_turn_with_the_input_is_found_and_made_small(monke
     monkeypatch.setattr(relations, "commands", wrong)
     found = case("stokes", ["turn", "skin"], spheres=5, radii="unlike", motion="ab2", flow="uniform")
     assert found.judge()[0] == "differs"
-    small = found.reduced()
+    small = found.reduced(patience=np.inf)
     assert small.names == ["turn"] and small.options == case("stokes", []).options | {"radii": small.options["radii"]}
     script = small.script()
     assert script.count("fix wind odd addforce 0.01 0 0") == 2 and script.count("\nlmp -in in.0\n") == 2
@@ -103,7 +104,7 @@ def test_every_change_and_every_option_can_be_drawn():
 
 def test_lives_of_all_models_end_well(tmp_path):
     for model in relations.MODELS:
-        worker = lives.Worker(5, 2, 1, 60, str(tmp_path), lives.__file__, {"LIVES_MODEL": model})
+        worker = lives.Worker(5, 2, 1, PATIENCE, str(tmp_path), lives.__file__, {"LIVES_MODEL": model})
         results = list(worker.results(0))
         assert [r.get("end") for r in results] == [None, None] and all(r["commands"] >= lives.LENGTH[0] for r in results)
 

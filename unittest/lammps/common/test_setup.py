@@ -8,13 +8,15 @@ import sys
 
 import pytest
 
+from host import PATIENCE
+
 TOP = pathlib.Path(__file__).resolve().parents[3]
 
 
 def run(words, folder, **more):
     env = {key: value for key, value in os.environ.items() if not key.startswith(("PIP_", "STOKESDYN_", "LAMMPS_", "LD_", "CMAKE_"))}
     done = subprocess.run([str(word) for word in words], cwd=folder, env=dict(env, **more), stdin=subprocess.DEVNULL, capture_output=True,
-                          text=True, timeout=300)
+                          text=True, timeout=PATIENCE)
     assert done.returncode != 0, done.stdout
     return " ".join((done.stdout + done.stderr).split())
 

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from system import environment
+from host import PATIENCE, environment
 
 EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "examples")
 
@@ -15,7 +15,7 @@ EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", 
                                   "still_water", "taylor_green"])
 def test_figures_hold(name):
     done = subprocess.run([sys.executable, os.path.join(EXAMPLES, name, "run.py"), "--quick"], env=environment(), capture_output=True,
-                          text=True, timeout=600)
+                          text=True, timeout=PATIENCE)
     assert done.returncode == 0 and "\nok " in done.stdout and "MISSED" not in done.stdout, done.stdout + done.stderr
 
 

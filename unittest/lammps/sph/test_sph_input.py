@@ -6,7 +6,7 @@ import pytest
 
 import sph_tools as T
 from sph_tools import random_scene, run, start
-from host import environment, mpirun
+from host import PATIENCE, environment, mpirun
 
 PAIR = "pair_style sph/artVisc/tensCorr wendland 0.012\npair_coeff * *\n"
 MOVE = "fix move all nve/sph\n"
@@ -196,7 +196,7 @@ def test_message_of_one_rank_reaches_a_file(tmp_path, ranks):
     command = mpirun(ranks) + ["lmp", "-in", str(script), "-log", "log.test", "-nocite"]
     with open(tmp_path / "out", "w") as out:
         code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, cwd=tmp_path, env=environment(),
-                              timeout=60).returncode
+                              timeout=PATIENCE).returncode
     assert code != 0
     assert "atom 7 has the density 0; it must be a number > 0" in (tmp_path / "out").read_text()
     if ranks == 1:

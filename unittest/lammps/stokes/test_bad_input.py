@@ -314,7 +314,7 @@ def test_velocity_that_becomes_nan_within_a_run_stops_it_on_all_ranks(tmp_path, 
                         dt=1e-3)
     lines += ["fix move all nve/sphere", "variable bad atom 0*exp(999*(id==2)*(step>5))", "fix kick all addforce v_bad 0 0",
               "run 20"]
-    ended = lmp(tmp_path, lines, ranks=ranks, timeout=30, succeed=False)
+    ended = lmp(tmp_path, lines, ranks=ranks, succeed=False)
     assert ended.code != 0
     # which spoils the position in the same step, too
     assert re.search(f"{PAIR}: step [67], atom 2: its velocity is not a finite number", ended.log)
@@ -324,7 +324,7 @@ def test_velocity_that_becomes_nan_within_a_run_stops_it_on_all_ranks(tmp_path, 
 def test_fluid_velocity_that_becomes_nan_on_one_rank_stops_all(tmp_path, mode):
     lines = input_lines(three(), f"{MODES[mode]} visc 1.3 algorithm 2 fluid_velocity v_u 0 0", tmp_path / "data", box=BOX,
                         comm="comm_modify cutoff 6", before_pair="variable u atom 0*exp(999*(id==3)*(step>=5))", dt=1e-3)
-    ended = lmp(tmp_path, lines + ["fix move all nve/sphere", "run 20"], ranks=2, timeout=30, succeed=False)
+    ended = lmp(tmp_path, lines + ["fix move all nve/sphere", "run 20"], ranks=2, succeed=False)
     assert ended.code != 0
     assert "step 5, atom 3: keyword fluid_velocity: the fluid velocity there is not a finite number" in ended.log
 
@@ -335,12 +335,12 @@ def test_failed_solve_stops_all_ranks(tmp_path, words, text):
     x = np.zeros((10, 3))
     x[:, 2] = 1.4 * np.arange(10) - 6
     lines = input_lines(Spheres(x, A, (0, 0, 0.3)), words, tmp_path / "data", box=BOX)
-    ended = lmp(tmp_path, lines + ["run 0"], ranks=2, timeout=30, succeed=False)
+    ended = lmp(tmp_path, lines + ["run 0"], ranks=2, succeed=False)
     assert ended.code != 0 and f"{PAIR}: step 0: algorithm" in ended.log and text in ended.log
 
 
 @pytest.mark.parametrize("words", ["cut_off_distance inf visc -1", "cut_off_distance inf visc 1.3 algorithm 3", "visc 1.3"])
 def test_bad_command_stops_all_ranks(tmp_path, words):
     lines = input_lines(three(), words, tmp_path / "data", box=BOX)
-    ended = lmp(tmp_path, lines + ["run 0"], ranks=2, timeout=30, succeed=False)
+    ended = lmp(tmp_path, lines + ["run 0"], ranks=2, succeed=False)
     assert ended.code != 0 and f"ERROR: {PAIR}: keyword" in ended.log

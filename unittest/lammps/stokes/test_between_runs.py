@@ -5,6 +5,7 @@ import sys
 import numpy as np
 import pytest
 
+from host import PATIENCE
 from system import LammpsError, Spheres, environment, input_lines, lmp
 
 STYLE = "cut_off_distance inf visc 1.3 algorithm 2"
@@ -80,7 +81,7 @@ def test_a_run_that_blows_up_in_a_periodic_box_ends_with_atom_and_step(tmp_path,
     x = np.vstack([x, x + (1.9, 0.1, 0)])
     spheres = Spheres(x, 0.7, rng.normal(size=(16, 3)), molecule=np.tile(np.arange(1, 9), 2))
     lines = input_lines(spheres, style, tmp_path / "data", boundary="p p p", box=[(-12, 12)] * 3, comm="comm_modify cutoff 11", dt=10.0)
-    ended = lmp(tmp_path, lines + ["fix move all nve/sphere", "thermo 1000", "run 400"], ranks=ranks, timeout=40, succeed=False)
+    ended = lmp(tmp_path, lines + ["fix move all nve/sphere", "thermo 1000", "run 400"], ranks=ranks, succeed=False)
     assert ended.code != 0 and "ERROR" in ended.text
 
 
@@ -125,7 +126,7 @@ def memory_of(tmp_path, style):
              "velocity all set 0.1 0 0", "group part id 1:1000", "neighbor 0.3 bin"] + style + ["run 1"]
     (tmp_path / "in.memory").write_text("\n".join(lines) + "\n")
     words = [sys.executable, "-c", PROGRAM, str(tmp_path / "in.memory")]
-    out = subprocess.run(words, stdout=subprocess.PIPE, check=True, timeout=120, env=environment()).stdout.split()
+    out = subprocess.run(words, stdout=subprocess.PIPE, check=True, timeout=PATIENCE, env=environment()).stdout.split()
     return int(out[-2]), int(out[-1])
 
 

@@ -234,7 +234,7 @@ def test_velocity_that_is_nan_stops_the_run(simulation, words):
 def test_velocity_that_is_nan_stops_both_ranks(tmp_path, words):
     lines = input_lines(cloud(), f"{words} visc {ETA} algorithm 2", tmp_path / "data", comm="comm_modify cutoff 12")
     lines += ["variable bad atom vx+0*exp(999*(id==7))", "run 3", "velocity all set v_bad NULL NULL", "run 3"]
-    ended = lmp(tmp_path, lines, ranks=2, timeout=30, succeed=False)
+    ended = lmp(tmp_path, lines, ranks=2, succeed=False)
     assert ended.code != 0
     assert f"{PAIR}: step 3, atom 7: its velocity is not a finite number" in ended.log
 
@@ -244,7 +244,7 @@ def test_velocity_that_is_nan_stops_both_ranks(tmp_path, words):
 def test_angular_velocity_that_is_nan_stops_all_ranks(tmp_path, ranks):
     lines = input_lines(cloud(), f"cut_off_distance inf rotation yes visc {ETA} algorithm 2", tmp_path / "data")
     lines += ["variable bad atom exp(999)-exp(999)", "group one id 7", "set group one omega v_bad 0 0", "run 3"]
-    ended = lmp(tmp_path, lines, ranks=ranks, timeout=30, succeed=False)
+    ended = lmp(tmp_path, lines, ranks=ranks, succeed=False)
     assert ended.code != 0
     assert f"{PAIR}: step 0, atom 7: its velocity is not a finite number" in ended.log
 

@@ -37,7 +37,7 @@ def forces(request, tmp_path_factory):
     lines, keys = [], list(itertools.product(CASES, MODES, LAYOUTS))
     for name, mode, layout in keys:
         lines += block(folder, name, mode, *layout)
-    lmp(folder, lines, ranks=request.param, timeout=180)
+    lmp(folder, lines, ranks=request.param)
     return {key: read_dump(folder / ("-".join((key[0], key[1]) + key[2]) + ".dump"))[0][1] for key in keys}
 
 

@@ -313,7 +313,7 @@ def test_positions_far_out_of_a_periodic_box_end_in_an_error(tmp_path, far):
     lines = input_lines(spheres, f"clumps_only yes rigid_clumps auto visc 1.3 {SOLVED}", tmp_path / "data", boundary="p p p",
                         box=[(-9.0, 15.0), (-9.0, 9.0), (-9.0, 9.0)], comm="comm_modify cutoff 6", dt=1e-3)
     ended = lmp(tmp_path, lines + ["neigh_modify every 1 delay 0 check yes", "fix nve all nve/sphere", "velocity all create 1.0 4711", "run 100",
-                                   f"velocity all scale {far * far}", "timestep 1.0", "run 100"], timeout=20, succeed=False)
+                                   f"velocity all scale {far * far}", "timestep 1.0", "run 100"], succeed=False)
     assert "ERROR" in ended.text
 
 

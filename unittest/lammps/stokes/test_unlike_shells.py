@@ -125,7 +125,7 @@ def three_sizes(tmp_path, ranks=1, clumps=False, words="", before="", tail=("run
         x, a, molecule = x[clear], a[clear], [m for m, c in zip(molecule, clear) if c]
         words += " rigid_clumps yes"
     lines = script(tmp_path, x, a, f"fluid_velocity v_u 0 0 relative_tolerance {tolerance} far_field_tolerance 1e-10 {words}", before, molecule)
-    lmp(tmp_path, lines + list(tail), ranks, timeout=200)
+    lmp(tmp_path, lines + list(tail), ranks)
     return last(tmp_path)
 
 
@@ -151,7 +151,7 @@ def test_three_sizes_go_on_from_a_restart_file(tmp_path, clumps):
     whole = three_sizes(tmp_path, 1, clumps, tail=("run 3", "run 2"), tolerance=1e-3)
     three_sizes(tmp_path, 1, clumps, tail=("run 3", "write_restart half.restart"), tolerance=1e-3)
     again = [line for line in script(tmp_path, *crowd()) if not line.startswith("pair_")]
-    lmp(tmp_path, from_restart(again) + ["run 2"], timeout=200)
+    lmp(tmp_path, from_restart(again) + ["run 2"])
     assert np.abs(last(tmp_path) - whole).max() < 1e-12 * np.abs(whole).max()
 
 
@@ -179,10 +179,10 @@ def test_small_shells_of_42_points_are_half_ones_after_a_restart_too(tmp_path):
 def test_three_sizes_anywhere_in_the_box_and_in_any_order(tmp_path):
     x, a = crowd()
     style = "relative_tolerance 1e-9 far_field_tolerance 1e-10"
-    lmp(tmp_path, script(tmp_path, x, a, style) + ["run 0"], timeout=200)
+    lmp(tmp_path, script(tmp_path, x, a, style) + ["run 0"])
     here = last(tmp_path)
     order = np.random.default_rng(2).permutation(len(a))
-    lmp(tmp_path, script(tmp_path, (x[order] + (1.3, -2.2, 0.4)) % SIDE, a[order], style) + ["run 0"], timeout=200)
+    lmp(tmp_path, script(tmp_path, (x[order] + (1.3, -2.2, 0.4)) % SIDE, a[order], style) + ["run 0"])
     assert np.abs(last(tmp_path) - here[order]).max() < 1e-7 * np.abs(here).max()
 
 

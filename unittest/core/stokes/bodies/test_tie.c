@@ -270,11 +270,13 @@ static void dense_clouds_take_few_products(void **state)
   (void) state;
   static const double error[2] = {1e-4, 1e-3};
   int products[2];
-  settling *s = settling_create(2000, 0.5, 1e-6);
-  double *reference = malloc(sizeof(double) * 12000);
+  const int n = CHECK_SIZE(2000, 400);
+  const size_t size = sizeof(double) * 6 * (size_t) n;
+  settling *s = settling_create(n, 0.5, 1e-6);
+  double *reference = malloc(size);
   for (int k = 0; k < 2; k++) {
     settling_solve(s, 0, 1e-6);
-    memcpy(reference, s->v, sizeof(double) * 12000);
+    memcpy(reference, s->v, size);
     settling_solve(s, 0, 1e-3);
     products[k] = s->report.products;
     assert_true(products[k] <= 20);

@@ -130,6 +130,7 @@ static const struct {
   /* spheres of a clump at the most: time grows with the cube of the points */
   int spheres;
 } ladder[] = {{12, 0.6e-2, 1.5e-2, MOST}, {42, 0.35e-2, 0.4e-2, MOST}, {162, 0.15e-2, 0.2e-2, 4}};
+enum { RUNGS = CHECK_SIZE(3, 2) };
 
 static void worse(double *worst, double value, double exact)
 {
@@ -148,7 +149,7 @@ static void report(int rung, const char *what, double translation, double rotati
 static void clusters_are_near_exact(void **state)
 {
   (void) state;
-  for (int rung = 0; rung < 3; rung++) {
+  for (int rung = 0; rung < RUNGS; rung++) {
     double worst[2] = {0.0, 0.0};
     table t = table_open("clusters.csv");
     while (table_next(&t)) {
@@ -188,7 +189,7 @@ static void whole_matrices_are_near_exact(void **state)
 static void fused_rows_are_near_exact(void **state)
 {
   (void) state;
-  for (int rung = 0; rung < 3; rung++) {
+  for (int rung = 0; rung < RUNGS; rung++) {
     double worst[2] = {0.0, 0.0};
     table t = table_open("fused.csv");
     while (table_next(&t)) {
@@ -210,7 +211,7 @@ static void chains_are_near_exact_and_tumble_in_time(void **state)
 {
   (void) state;
   static const double limit[3] = {1e-2, 0.5e-2, 0.25e-2};
-  for (int rung = 0; rung < 3; rung++) {
+  for (int rung = 0; rung < RUNGS; rung++) {
     double worst[2] = {0.0, 0.0}, period = 0.0;
     table t = table_open("chains_exact.csv");
     while (table_next(&t)) {
@@ -240,7 +241,7 @@ static void unequal_dumbbells_are_near_exact(void **state)
                                         {3, 3.0405340, 3.1765256},
                                         {5, 5.0106730, 5.0943358},
                                         {10, 10.0012436, 10.0338406}};
-  for (int rung = 0; rung < 3; rung++) {
+  for (int rung = 0; rung < RUNGS; rung++) {
     double worst = 0.0, x[6] = {0}, a[2] = {1.0, 0.0};
     for (int k = 0; k < 5; k++) {
       a[1] = touching[k][0];

@@ -3,6 +3,7 @@
 #define NEAR_SCENE_H
 
 #include "clouds.h"
+#include "two_spheres.h"
 
 #include "sd_lubrication.h"
 #include "sd_tensor.h"
@@ -11,7 +12,7 @@
 
 typedef struct {
   scene s;
-  sd_two_sphere *functions;
+  const sd_two_sphere *functions;
   int64_t *body;
   /* of the fluid; NULL: it rests */
   const double *u;
@@ -21,9 +22,8 @@ typedef struct {
 
 static inline near_scene near_create(scene s, double largest_ratio, double gap)
 {
-  near_scene q = {.s = s, .gap = gap, .range = 2.0};
+  near_scene q = {.s = s, .functions = two_spheres(largest_ratio), .gap = gap, .range = 2.0};
   q.body = calloc((size_t) s.n + 1, sizeof(int64_t));
-  assert_int_equal(sd_two_sphere_create(largest_ratio, &q.functions), SD_OK);
   return q;
 }
 
@@ -49,7 +49,6 @@ static inline void near_place(near_scene *q)
 static inline void near_free(near_scene *q)
 {
   sd_lubrication_free(&q->L);
-  sd_two_sphere_free(q->functions);
   free(q->body);
   scene_free(&q->s);
 }

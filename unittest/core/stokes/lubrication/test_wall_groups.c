@@ -1,5 +1,6 @@
 /* Free spheres of one point above a wall: images, films of pairs and films of the wall together. */
 #include "table.h"
+#include "two_spheres.h"
 
 #include "sd_linear.h"
 #include "sd_lubrication.h"
@@ -32,11 +33,9 @@ static void resistance_of_model(const double *x, const double *a, double *R)
 static void add_pair_films(const double *x, const double *a, double *R)
 {
   const double w[N] = {1.0, 1.0};
-  sd_two_sphere *functions;
   sd_lubrication L = {0};
-  assert_int_equal(sd_two_sphere_create(2.0, &functions), SD_OK);
   const sd_lubrication_scene scene = {
-      .functions = functions, .gap = 1e-6, .range = 2.0, .n = N, .n_all = N, .spheres = {x, a, w}};
+      .functions = two_spheres(2.0), .gap = 1e-6, .range = 2.0, .n = N, .n_all = N, .spheres = {x, a, w}};
   assert_int_equal(sd_lubrication_place(&L, &scene), SD_OK);
   for (int j = 0; j < SIZE; j++) {
     double V[SIZE] = {0.0}, f[SIZE];
@@ -45,7 +44,6 @@ static void add_pair_films(const double *x, const double *a, double *R)
     for (int i = 0; i < SIZE; i++) R[i * SIZE + j] += f[i];
   }
   sd_lubrication_free(&L);
-  sd_two_sphere_free(functions);
 }
 
 static void add_wall_films(const double *x, const double *a, double *R)

@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "two_spheres.h"
 #include "ewald/periodic.h"
 
 #include "sd_body_shape.h"
@@ -41,7 +42,6 @@ typedef struct {
   /* of the films */
   double floor;
   sd_lubrication L;
-  sd_two_sphere *functions;
   sd_films films;
   /* what L asks for its ghosts */
   blob_images *images;
@@ -69,7 +69,6 @@ static inline void blobs_free(blobs *s)
   free(s->r), free(s->at), free(s->b), free(s->M), free(s->forces), free(s->R);
   sd_lubrication_free(&s->L);
   free(s->images);
-  sd_two_sphere_free(s->functions);
   free(s);
 }
 
@@ -241,11 +240,10 @@ static inline void blobs_add_films(blobs *s, double range, const double *gradien
   blob_images *g = blobs_images(s, range, gradient);
   free(s->images);
   s->images = g;
-  if (!s->functions)
-    assert_int_equal(sd_two_sphere_create(SD_FILM_LARGEST_RATIO, &s->functions), SD_OK);
-  assert_int_equal(sd_films_create(s->m.n, one_body, s->functions, &s->films), SD_OK);
+  const sd_two_sphere *functions = two_spheres(SD_FILM_LARGEST_RATIO);
+  assert_int_equal(sd_films_create(s->m.n, one_body, functions, &s->films), SD_OK);
   const sd_lubrication_scene scene = {
-      .functions = s->functions,
+      .functions = functions,
       .films = &s->films,
       .gap = s->floor,
       .range = range,

@@ -262,9 +262,7 @@ static void a_periodic_box_drifts(void **state)
   (void) state;
   place_of s = THREE;
   s.side = 6.0;
-  assert_true(error_of_drift(&s, 0) < 1e-4);
-  s.films = 1;
-  assert_true(error_of_drift(&s, 0) < 1e-4);
+  for (s.films = CHECK_SIZE(0, 1); s.films < 2; s.films++) assert_true(error_of_drift(&s, 0) < 1e-4);
 }
 
 /* Radii 1 : 3 and 1 : 10, gaps of 0.1 to 0.3 of the smaller one's radius */

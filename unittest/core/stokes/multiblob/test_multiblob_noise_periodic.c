@@ -263,7 +263,7 @@ static void check_spheres(int n, double large, double phi)
 static void unlike_spheres_with_films(void **state)
 {
   (void) state;
-  check_spheres(12, 1.0, 0.3);
+  check_spheres(CHECK_SIZE(12, 6), 1.0, 0.3);
 }
 
 /* Of four that touch, from their centroid: clumps stand at theirs */
@@ -287,8 +287,8 @@ static void crooked_chains_with_films(void **state)
 static void one_sphere_many_times_as_large(void **state)
 {
   (void) state;
-  check_spheres(8, 3.0, 0.14);
-  check_spheres(8, 8.0, 0.14);
+  check_spheres(CHECK_SIZE(8, 4), 3.0, 0.14);
+  check_spheres(CHECK_SIZE(8, 4), 8.0, 0.14);
 }
 
 /* The variance of every mode of the mobility as a step has it at the default noise_tolerance of 0.01, by what sharper
@@ -299,7 +299,7 @@ static void every_mode_is_right_at_the_default_tolerance(void **state)
   enum { DRAWS = 24 };
   double side, sum[6 * MOST] = {0.0}, V[2][6 * MOST], worst = 0.0;
   split_scene s;
-  blob_flock *f = spheres(32, 1.0, 0.3, &side);
+  blob_flock *f = spheres(CHECK_SIZE(32, 8), 1.0, 0.3, &side);
   split_in_cube(&s, f, side, 1e-4);
   const int size = 6 * s.whole.shaped, rows = (int) sd_bodies_rows(&s.whole);
   double *R = malloc(sizeof(double) * (size_t) (size * size)), *G = malloc(sizeof(double) * (size_t) (size * rows));

@@ -321,7 +321,7 @@ static void iterations_of_a_suspension(void **state)
   } scenes[] = {{"phi 0.1", 0.1, {18, 36}}, {"phi 0.45", 0.45, {28, 55}}};
   for (int k = 0; k < 2; k++) {
     double side;
-    scene s = cloud_periodic(16, scenes[k].phi, 0.7, 1.3, 20, &side);
+    scene s = cloud_periodic(CHECK_SIZE(16, 8), scenes[k].phi, 0.7, 1.3, 20, &side);
     const sd_ewald_box box = {.periodic = 1, .edge = {side, side, side}};
     check_iterations(&s, &box, 3, 0, scenes[k].limit, scenes[k].name);
     scene_free(&s);

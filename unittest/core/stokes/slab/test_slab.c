@@ -310,7 +310,7 @@ static void heaps_have_positive_matrices(void **state)
   (void) state;
   enum { FEW = 12 };
   uint64_t seed = 40;
-  for (int k = 0; k < 200; k++) {
+  for (int k = 0; k < CHECK_SIZE(200, 20); k++) {
     const double H = uniform(&seed, 2.0, 6.0), L = uniform(&seed, 4.0, 9.0);
     const sd_slab_walls walls = k % 2 ? sd_slab_floor(&ground) : sd_slab_slit(2, 0.0, H, k % 4 == 0);
     const sd_ewald_box box = slab_box(2, L, 1.3 * L);
