@@ -1,6 +1,7 @@
 #include "compute_sph_energy.h"
 
 #include "fix_sph_settings.h"
+#include "fix_sph_tension.h"
 #include "fixes.h"
 #include "lammps_compat.h"
 #include "pair_sph_artvisc_tenscorr.h"
@@ -37,6 +38,7 @@ sd_sph_members FixSphEnergy::group()
   pair = Sph::prepared_pair(voice);
   states = fixes_of<FixSphPressure>(lmp);
   gravities = fixes_of(lmp, "gravity");
+  tensions = fixes_of<FixSphTension>(lmp);
   masses.resize(atom->nlocal + 1);
   for (int i = 0; i < atom->nlocal; i++) masses[i] = Sph::mass(lmp, i);
   const int *mask = atom->mask;
@@ -75,6 +77,14 @@ double FixSphEnergy::elastic()
   return sum_of_all(world, elastic_of(group(), atom->rho));
 }
 
+double FixSphEnergy::surface(const sd_sph_members &g) const
+{
+  double sum = 0.0;
+  for (const auto *fix : tensions)
+    if (fix->has_rows(g.n)) sum += fix->tension() * sd_sph_sum(&g, fix->areas());
+  return sum;
+}
+
 /* Positions go on through the faces of a periodic box. */
 std::vector<double> FixSphEnergy::places() const
 {
@@ -87,9 +97,11 @@ void FixSphEnergy::measure(double *out)
 {
   const sd_sph_members members = group();
   double others;
-  out[ON_GROUP] = sd_sph_power(&members, pair->own_forces(), &out[ON_OTHERS]);
-  out[RUBS] = sd_sph_power(&members, pair->own_friction(), &others);
+  out[ON_GROUP] = sd_sph_power(&members, 4, pair->own_forces(), &out[ON_OTHERS]);
+  out[RUBS] = sd_sph_power(&members, 4, pair->own_friction(), &others);
   out[RUBS] += others;
+  out[PULLED] = 0.0;
+  for (const auto *fix : tensions) out[PULLED] += sd_sph_power(&members, 3, fix->forces(), &others);
   out[SHIFTED] = pair->shift() ? along_gravity(members, pair->shift()) : 0.0;
 }
 
@@ -102,7 +114,7 @@ void FixSphEnergy::of_particles(const sd_sph_members &members, std::vector<doubl
     double *row = &rows[COLUMNS * i], nobody;
     row[STORED] = elastic_of(one, atom->rho + i);
     row[ENERGY] = row[STORED] + sd_sph_kinetic_energy(&one) - along_gravity(one, &x[3 * i]);
-    row[POWER] = sd_sph_power(&one, pair->own_forces() + 4 * i, &nobody);
+    row[POWER] = sd_sph_power(&one, 4, pair->own_forces() + 4 * i, &nobody);
   }
 }
 
@@ -140,9 +152,10 @@ void FixSphEnergy::look_at_ends(bool counts)
   brought[ENERGY] -= 0.5 * dt * (come[POWER] + gone[POWER]);
 }
 
-void FixSphEnergy::setup(int /*vflag*/)
+void FixSphEnergy::setup(int vflag)
 {
   const double now = elastic();
+  for (auto *fix : tensions) fix->setup(vflag);    // before its turn, if it comes later
   jumps += now - (has_run != 0.0 ? elastic_then : 0.0);
   has_run = 1.0;
   elastic_then = now;
@@ -177,17 +190,19 @@ void FixSphEnergy::post_run()
 void FixSphEnergy::values(double *out)
 {
   const sd_sph_members members = group();
-  double mine[4 + POWERS] = {sd_sph_kinetic_energy(&members), -along_gravity(members, places().data()), brought[ENERGY],
-                             brought[STORED]},
-         all[4 + POWERS];
-  std::copy_n(done, (int) POWERS, mine + 4);
-  MPI_Allreduce(mine, all, 4 + POWERS, MPI_DOUBLE, MPI_SUM, world);
-  const double *work = all + 4;
+  double mine[5 + POWERS] = {sd_sph_kinetic_energy(&members), -along_gravity(members, places().data()), brought[ENERGY],
+                             brought[STORED], surface(members)},
+         all[5 + POWERS];
+  std::copy_n(done, (int) POWERS, mine + 5);
+  MPI_Allreduce(mine, all, 5 + POWERS, MPI_DOUBLE, MPI_SUM, world);
+  const double *work = all + 5;
   out[KINETIC] = all[0];
   out[POTENTIAL] = all[1];
   out[ELASTIC] = elastic();
   out[WORK] = -work[ON_OTHERS];
   out[BROUGHT] = all[2];
+  out[SURFACE] = all[4];
+  out[PULL] = work[PULLED];
   const double stored = has_run != 0.0 ? out[ELASTIC] - jumps - all[3] : 0.0;
   out[DISSIPATED] = out[WORK] - work[ON_GROUP] + work[SHIFTED] - stored;
   out[FRICTION] = -work[RUBS];
@@ -248,6 +263,6 @@ double ComputeSphEnergy::compute_scalar()
   compute_vector();
   invoked_scalar = update->ntimestep;
   scalar = vector[FixSphEnergy::KINETIC] + vector[FixSphEnergy::POTENTIAL] +
-      vector[FixSphEnergy::ELASTIC];
+      vector[FixSphEnergy::ELASTIC] + vector[FixSphEnergy::SURFACE];
   return scalar;
 }

@@ -14,6 +14,7 @@
 namespace StokesDyn {
 
 class FixSphPressure;
+class FixSphTension;
 
 /* Internal fix: its memory, what the forces of the pair style have done since it was made. It follows
  * the run through restart files. */
@@ -28,14 +29,15 @@ class FixSphEnergy : public SphFix {
   void end_of_step() override;
   void post_run() override;
 
-  enum Value { KINETIC, POTENTIAL, ELASTIC, DISSIPATED, FRICTION, WORK, BROUGHT, VALUES };
+  enum Value { KINETIC, POTENTIAL, ELASTIC, DISSIPATED, FRICTION, WORK, BROUGHT, SURFACE, PULL, VALUES };
   /* All of the moment, the same on all ranks. */
   void values(double *out);
 
  private:
   /* Of this rank: power of the pair style's forces on the group, of friction among them and on
-   * others (the sum is what it dissipates), of all forces on others, of gravity along the shift. */
-  enum { ON_GROUP, RUBS, ON_OTHERS, SHIFTED, POWERS };
+   * others (the sum is what it dissipates), of all forces on others, of gravity along the shift, of fix
+   * sph/tension on the group. */
+  enum { ON_GROUP, RUBS, ON_OTHERS, SHIFTED, PULLED, POWERS };
   double power[POWERS] = {}, done[POWERS] = {}, dt = 0.0;
   /* of the group, at the end of the last run or in its restart file; what happened in between is
    * nobody's work and goes to `jumps` */
@@ -44,6 +46,7 @@ class FixSphEnergy : public SphFix {
   std::vector<double> masses;
   std::vector<FixSphPressure *> states;
   std::vector<LAMMPS_NS::Fix *> gravities;
+  std::vector<FixSphTension *> tensions;
 
   /* With open ends the flow alone counts: particles in the layers push it from outside, and those
    * that come and go bring their energy and take it along. Of a particle of the flow after the last
@@ -61,6 +64,7 @@ class FixSphEnergy : public SphFix {
   double elastic_of(sd_sph_members, const double *rho) const;
   double along_gravity(sd_sph_members, const double *y) const;
   double elastic();
+  double surface(const sd_sph_members &) const;
   std::vector<double> places() const;
   void measure(double *);
   void of_particles(const sd_sph_members &, std::vector<double> &rows) const;

@@ -67,6 +67,7 @@ int FixSphTension::setmask()
 void FixSphTension::init()
 {
   SphFix::init();
+  is_set_up = false;
   if (fixes_of(lmp, STYLE).size() > 1)
     voice.fail("more than one: there is one fluid, with one surface tension");
   if (!pair->finds_surface())
@@ -164,6 +165,13 @@ void FixSphTension::check_range()
 }
 
 // --- a step --------------------------------------------------------------------------------------
+
+/* Once, whoever asks first: compute sph/energy needs the force that the first step begins with. */
+void FixSphTension::setup(int vflag)
+{
+  if (!is_set_up) post_force(vflag);
+  is_set_up = true;
+}
 
 void FixSphTension::post_force(int /*vflag*/)
 {
@@ -292,7 +300,8 @@ void FixSphTension::add_forces()
 {
   F.resize(3 * (size_t) atom->nlocal + 1);
   const sd_sph_tension how = {sigma, sd_sph_surface_friction(sigma, rho0, surface.h)};
-  area = sd_sph_tension_forces(&film, &how, whole.data(), at_surface.data(), turns.data(), kappa.data(), F.data());
+  area.resize(atom->nlocal + 1);
+  sd_sph_tension_forces(&film, &how, whole.data(), at_surface.data(), turns.data(), kappa.data(), F.data(), area.data());
 }
 
 /* In every step: drops that meet are one at once, whenever the run began and LAMMPS re-neighboured. */
@@ -341,14 +350,20 @@ void FixSphTension::show()
   }
 }
 
+double FixSphTension::whole_area() const
+{
+  const sd_sph_members everybody = {std::min(atom->nlocal, (int) area.size()), atom->mask, 0, nullptr, nullptr};
+  return sum_of_all(world, sd_sph_sum(&everybody, area.data()));
+}
+
 double FixSphTension::compute_scalar()
 {
-  return sigma * sum_of_all(world, area);
+  return sigma * whole_area();
 }
 
 double FixSphTension::compute_vector(int k)
 {
-  return k < 3 ? sum[k] : k == 3 ? (double) ndrops : sum_of_all(world, area);
+  return k < 3 ? sum[k] : k == 3 ? (double) ndrops : whole_area();
 }
 
 double FixSphTension::memory_usage()

@@ -5,6 +5,7 @@
 
 #include "sd_sph_deep.h"
 #include "sd_sph_drops.h"
+#include "sd_sph_energy.h"
 #include "sd_sph_tension.h"
 #include "sph.h"
 
@@ -22,13 +23,19 @@ class FixSphTension : public SphFix {
   FixSphTension(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override;
   void init() override;
-  void setup(int vflag) override { post_force(vflag); }
+  void setup(int vflag) override;
   void post_force(int) override;
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
+
+  /* Of the latest force, rows of particles of this rank: [3 n] the force, [n] the area; are there so many? */
+  bool has_rows(int n) const { return (int) area.size() == n + 1; }
+  const double *forces() const { return F.data(); }
+  const double *areas() const { return area.data(); }
+  double tension() const { return sigma; }
 
  private:
   // settings
@@ -39,6 +46,7 @@ class FixSphTension : public SphFix {
   void parse_contact(Keywords &in);
 
   // of a run
+  bool is_set_up = false;
   sd_sph_surface surface = {};
   double rho0 = 0.0, spacing = 0.0;
   bool walls = false;
@@ -58,9 +66,9 @@ class FixSphTension : public SphFix {
   std::vector<int> wall, parent, place, skin;
   std::vector<size_t> first;
   std::vector<char> inside, marked, cells, deep;
-  std::vector<double> one, kappa, once, twice, weights, F, name, mass, held;
+  std::vector<double> one, kappa, once, twice, weights, F, area, name, mass, held;
   std::vector<sd_sph_drop> drops;
-  double area = 0.0, sum[3] = {0.0, 0.0, 0.0};
+  double sum[3] = {0.0, 0.0, 0.0};
   int ndrops = 0;
   void look_at_particles();
   void find_deep();
@@ -71,6 +79,7 @@ class FixSphTension : public SphFix {
   void find_drops();
   void keep_momentum();
   void show();
+  double whole_area() const;
 
   // communication of one array at a time
   double *comm_array = nullptr;

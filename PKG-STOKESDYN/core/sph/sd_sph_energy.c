@@ -43,12 +43,20 @@ double sd_sph_elastic_energy(const sd_sph_members *g, const sd_sph_state *state,
   return sum;
 }
 
-double sd_sph_power(const sd_sph_members *g, const double *F, double *others)
+double sd_sph_power(const sd_sph_members *g, int columns, const double *F, double *others)
 {
   double sum = 0.0;
   *others = 0.0;
   for (int i = 0; i < g->n; i++)
-    *(member(g, i) ? &sum : others) += sd_dot(F + 4 * (size_t) i, g->v + 3 * (size_t) i);
+    *(member(g, i) ? &sum : others) += sd_dot(F + columns * (size_t) i, g->v + 3 * (size_t) i);
+  return sum;
+}
+
+double sd_sph_sum(const sd_sph_members *g, const double *a)
+{
+  double sum = 0.0;
+  for (int i = 0; i < g->n; i++)
+    if (member(g, i)) sum += a[i];
   return sum;
 }
 

@@ -30,9 +30,12 @@ double sd_sph_kinetic_energy(const sd_sph_members *g);
 /* sum m e of the density rho [n] */
 double sd_sph_elastic_energy(const sd_sph_members *g, const sd_sph_state *state, const double *rho);
 
-/* sum F.v over the members and, in *others, over all that are none; F [4 n], rows Fx Fy Fz and one
- * number that is not read */
-double sd_sph_power(const sd_sph_members *g, const double *F, double *others);
+/* sum F.v over the members and, in *others, over all that are none; F [columns n], rows Fx Fy Fz and what is
+ * not read */
+double sd_sph_power(const sd_sph_members *g, int columns, const double *F, double *others);
+
+/* sum a of numbers a [n] */
+double sd_sph_sum(const sd_sph_members *g, const double *a);
 
 /* sum m b.y of rows y [3 n], for one vector b */
 double sd_sph_along(const sd_sph_members *g, const double b[3], const double *y);

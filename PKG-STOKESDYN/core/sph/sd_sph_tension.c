@@ -311,11 +311,10 @@ void sd_sph_film_inwards(const sd_sph_film *f, const double *surface, const sd_s
 
 // --- force -----------------------------------------------------------------------------------------
 
-double sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const double *whole,
-                             const double *surface, const double *rows, const double *k, double *F)
+void sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const double *whole,
+                           const double *surface, const double *rows, const double *k, double *F, double *area)
 {
   const double factor = 2.0 * (f->surface->dimension + 2) * t->friction;
-  double area = 0.0;
   for (int i = 0; i < f->list->n; i++) {
     const double V = is_wall(f, i) ? 0.0 : f->x4[4 * (size_t) i + 3], *G = whole + 4 * (size_t) i + 1,
                  w = surface[4 * (size_t) i + 3], *rubs = rows + SD_SPH_SKIN_SUMS * (size_t) i + 16;
@@ -323,9 +322,8 @@ double sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, cons
       F[3 * (size_t) i + d] = 2.0 * t->sigma * V * k[i] * G[d];
       if (w > 0.0) F[3 * (size_t) i + d] += factor * w * V * rubs[d];
     }
-    if (w > 0.0 || (w == 0.0 && rubs[-1] > 0.0)) area += 2.0 * V * length3(G);
+    area[i] = w > 0.0 || (w == 0.0 && rubs[-1] > 0.0) ? 2.0 * V * length3(G) : 0.0;
   }
-  return area;
 }
 
 double sd_sph_capillary_step(double sigma, double rho, double h)

@@ -44,8 +44,10 @@ static void power_of_members_and_of_others(void **state)
   const double F[12] = {1, 1, 1, 99, 2, 0, 0, 99, 0, 0, 7, 99};
   const sd_sph_members two = {3, mask, 2, m, v};
   double others;
-  CHECK_NEAR(sd_sph_power(&two, F, &others), 6.0 + 14.0, 1e-15);
+  CHECK_NEAR(sd_sph_power(&two, 4, F, &others), 6.0 + 14.0, 1e-15);
   CHECK_NEAR(others, 8.0, 1e-15);
+  CHECK_NEAR(sd_sph_power(&two, 3, v, &others), 14.0 + 4.0, 1e-15);
+  CHECK_NEAR(sd_sph_sum(&two, m), 7.0, 1e-15);
   CHECK_NEAR(sd_sph_kinetic_energy(&two), 0.5 * (2.0 * 14.0 + 5.0 * 4.0), 1e-15);
   CHECK_NEAR(sd_sph_along(&two, b, v), -2.0 * (2.0 * 3.0 + 5.0 * 2.0), 1e-15);
 }
