@@ -1,4 +1,5 @@
-"""The mode n = 2 of a viscous drop in two dimensions: its exact frequency and damping, and those of a recorded amplitude."""
+"""The mode n = 2 of a viscous drop in two dimensions: its exact frequency and damping, and those of a recorded amplitude; and the rate at
+which a wave on a jet grows."""
 import numpy as np
 
 
@@ -49,3 +50,19 @@ def fitted(t, amplitude, w, g):
         if np.abs(change).max() < 1e-12:
             break
     return w, g
+
+
+def bessel(n, x):
+    """I_n(x) of the modified Bessel function, by its power series"""
+    term, total = (x / 2) ** n / (1 if n == 0 else n), 0.0
+    for k in range(1, 60):
+        total += term
+        term *= x * x / (4 * k * (k + n))
+    return total
+
+
+def growth(k, nu, R=1.0):
+    """Rate of the wave number k on a jet, rho = sigma = 1: Rayleigh's, k R I_1/I_0 (1 - k^2 R^2)/R^3 as its square, and the friction of a
+    thin jet, 3 nu k^2 (Weber)"""
+    x = k * R
+    return (x * bessel(1, x) / bessel(0, x) * (1 - x * x) / R**3 + (1.5 * nu * k * k) ** 2) ** 0.5 - 1.5 * nu * k * k

@@ -13,7 +13,7 @@ using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 static const char *const ID = "SPH_SHIFT_STATE";
-static constexpr int DU = 3, REST = 9;    // columns
+static constexpr int DU = 3, WHOLE = 1, REST = 9;    // columns
 
 void FixSphShift::take_away(LAMMPS *lmp)
 {
@@ -37,11 +37,11 @@ FixSphShift *FixSphShift::provide(LAMMPS *lmp, bool wanted, bool matrices)
 }
 
 FixSphShift::FixSphShift(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), matrices(narg > 3), shifts(DU), rest(REST)
+    RowsFix(lmp, narg, arg), matrices(narg > 3), shifts(DU), wholes(WHOLE), rest(REST)
 {
   restart_global = 1;
   comm_border = DU;
-  std::vector<RowsOfAtoms *> all = {&shifts};
+  std::vector<RowsOfAtoms *> all = {&shifts, &wholes};
   if (matrices) all.push_back(&rest);
   keep(all, nullptr, true, WITH_BORDERS);
 }
@@ -62,6 +62,7 @@ void FixSphShift::keep_rows(int n, const double *order, const double *kick)
 {
   const size_t columns = matrices ? 16 : 8;
   for (int i = 0; i < n; i++) std::copy_n(order + columns * i + 4, DU, shifts.give(i));
+  for (int i = 0; i < atom->nlocal; i++) *wholes.give(i) = order[columns * i + 7];
   has_rows = 1.0;
   if (!matrices) return;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -76,6 +77,7 @@ void FixSphShift::put_back(double *order, double *kick) const
   const size_t columns = matrices ? 16 : 8;
   for (int i = 0; i < atom->nlocal; i++) {
     std::copy_n(shifts[i], DU, order + columns * i + 4);
+    order[columns * i + 7] = *wholes[i];
     if (!matrices || !rest.has(i)) continue;    // a new atom: B and kick of this moment
     std::copy_n(rest[i], 6, order + columns * i + 8);
     std::copy_n(rest[i] + 6, 3, kick + 3 * (size_t) i);

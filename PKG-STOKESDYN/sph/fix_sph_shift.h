@@ -27,7 +27,8 @@ class FixSphShift : public RowsFix {
   const double *du() { return shifts.array()[0]; }
   /* Has there been a step? */
   bool filled() const { return has_rows != 0.0; }
-  /* To and from the pair style's rows of sd_sph_order.h: du of all n, and with pliant shift and
+  /* To and from the pair style's rows of sd_sph_order.h: du of all n, of this rank's whether their support is
+   * whole, and with pliant shift and
    * correction B and kick of this rank's. */
   void keep_rows(int n, const double *order, const double *kick);
   void put_back(double *order, double *kick) const;
@@ -39,8 +40,8 @@ class FixSphShift : public RowsFix {
  private:
   const bool matrices;
   double has_rows = 0.0;
-  // du; B and kick
-  AtomArray shifts, rest;
+  // du; whether the support is whole; B and kick
+  AtomArray shifts, wholes, rest;
 };
 
 }    // namespace StokesDyn

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
@@ -55,6 +56,11 @@ void FixSphTension::parse_contact(Keywords &in)
     in.check(angle > 0.0 && angle < 180.0, "is no contact angle: it is above 0 and below 180 degrees");
     contacts[type] = {cos(angle * SD_PI / 180.0), sin(angle * SD_PI / 180.0)};
   } while (in.more() && is_number(in.peek(), number));
+}
+
+FixSphTension::~FixSphTension()
+{
+  sd_cells_free(&cells_of_drops);
 }
 
 int FixSphTension::setmask()
@@ -310,7 +316,12 @@ void FixSphTension::find_drops()
   const size_t n = (size_t) film.all;
   parent.resize(n + 1);
   name.assign(n + 1, 0.0);
-  sd_sph_find_drops(&film, parent.data());
+  if (room_of_drops < n) {
+    sd_cells_free(&cells_of_drops);
+    room_of_drops = n + n / 4;
+    if (sd_cells_create(&cells_of_drops, (int) room_of_drops) != SD_OK) throw std::bad_alloc();
+  }
+  sd_sph_find_drops(&film, &cells_of_drops, parent.data());
   for (size_t i = 0; i < n; i++) name[i] = (double) atom->tag[i];
   int changed = 1;
   while (changed) {

@@ -21,6 +21,7 @@ class FixSphTension : public SphFix {
   static constexpr const char *STYLE = "sph/tension";
 
   FixSphTension(LAMMPS_NS::LAMMPS *, int, char **);
+  ~FixSphTension() override;
   int setmask() override;
   void init() override;
   void setup(int vflag) override;
@@ -68,6 +69,8 @@ class FixSphTension : public SphFix {
   std::vector<char> inside, marked, cells, deep;
   std::vector<double> one, kappa, once, twice, weights, F, area, name, mass, held;
   std::vector<sd_sph_drop> drops;
+  sd_cells cells_of_drops = {};
+  size_t room_of_drops = 0;
   double sum[3] = {0.0, 0.0, 0.0};
   int ndrops = 0;
   void look_at_particles();

@@ -113,7 +113,7 @@ OURS = re.compile("stokes_dynamics|hydro/vans|/sph|sph/|property/global|fix_modi
 PHYSICS = re.compile("diverge|definite|not rigid|singular|comm_modify|behind|on the wall|drives|phi =|memory|GB|density|"
                      "moved more|one place|time step|not finite|pressure|no mean|volume fraction")
 LAMMPS = re.compile("fix group ID|Illegal|Incorrect args|Numeric index|All pair coeffs|Expected|Variable|Unrecognized|Unknown|"
-                    "Lost atoms|Non-numeric|neighbor bins|Region|[Gg]roup|Out of range|mass|Invalid|Unbalanced|too large|"
+                    "Lost atoms|Non-numeric|neighbor bins|Region|[Gg]roup|[Oo]ut of range|mass|Invalid|Unbalanced|too large|"
                     "Input line")
 DEFECTS = ["crash", "hang", "accepted, though the pages call it wrong", "accepted without the warning", "refused, though valid",
            "error does not name the command", "error does not name the keyword", "forces not finite"]

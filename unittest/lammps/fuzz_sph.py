@@ -1,6 +1,6 @@
 """Scenes, grammar and rules of pair_style sph/artVisc/tensCorr and its fixes, written from their pages (for fuzz.py)."""
-from fuzz_grammar import (ANY, BAD, COUNT, NOT_NEGATIVE, ODD, POSITIVE, VARIABLES, YES_NO, Choice, Field, Maybe, Name, Number, NumberOr,
-                          Or, decimal, positive, write)
+from fuzz_grammar import (ANY, BAD, COUNT, NOT_NEGATIVE, ODD, POSITIVE, VARIABLES, YES_NO, Choice, Field, Integer, Maybe, Name, Number,
+                          NumberOr, Or, decimal, positive, read, write)
 
 WATER = """units si
 atom_style sph
@@ -279,6 +279,49 @@ def make_sph_check(case):
     water(case, check="fix limit all check/timestep/sph " + " ".join(words))
     if not case.judge(words, {"warn": [], "stop": []}, begin):
         case.faults += ["form", "N", "fraction"]
+
+
+class Angles:
+    """TYPE ANGLE, once or more"""
+    TYPE = Integer(lambda v: v in (1, 2), ["2"], ["1", "0", "3"])
+    ANGLE = Number(lambda v: 0 < v < 180, ["60", "90", "120.5"], ["0", "180", "-1", "1e-3"])
+
+    def write(self, draw):
+        return [w for _ in range(draw.choice([1, 1, 1, 2])) for kind in (self.TYPE, self.ANGLE) for w in write(kind, draw)]
+
+    def read(self, case):
+        words = read(self.TYPE, case) + read(self.ANGLE, case)
+        while case.at < len(case.words) and decimal(case.words[case.at]) is not None:
+            words += read(self.TYPE, case) + read(self.ANGLE, case)
+        case.types = getattr(case, "types", []) + words[::2]
+        return words
+
+
+TENSION = {"contact": [Angles()], "force": [YES_NO]}
+
+
+def make_sph_tension(case):
+    case.style, draw = "sph/tension", case.draw
+    walled, shift = draw.random() < 0.6, draw.choice(["yes"] * 8 + ["pliant", "no"])
+    volume, group = draw.choice(["no"] * 9 + ["yes"]), draw.choice(["all"] * 6 + ["fluid", "nobody", "wall"])
+    words = case.damaged(write(positive("0.072", "0.5", border=["0", "-1", "99", "101"]), draw) + case.words_of(TENSION, few=2))
+    water(case, tension=f"fix pull {group} sph/tension " + " ".join(words),
+          pair=f"pair_style sph/artVisc/tensCorr wendland 0.013 viscosity 1 central shift {shift}",
+          density=f"fix density all sph/density/continuity delta 0.1 volume {volume}",
+          **({"walls": "fix tank wall wall/adami/sph", "move": "fix move fluid nve/sph"} if walled else {}))
+    case.lines.append(case.lines.pop(case.tried))       # the pair style first
+    case.tried = len(case.lines) - 1
+    if not case.judge(words, TENSION, [("SIGMA", positive("0.072"))]):
+        return
+    types = getattr(case, "types", [])
+    case.refuse_if(len(set(map(int, types))) < len(types), "contact")
+    case.refuse_if(any(int(t) != 2 or not walled for t in types), "contact")
+    case.refuse_if(shift == "no", "shift")
+    case.refuse_if(volume == "yes", "volume", "shift")      # shift pliant refuses it too
+    case.refuse_if(group in ("nobody", "wall") or group == "fluid" and not walled, "group")
+    sigma = float(case.value("SIGMA"))
+    case.extreme |= sigma > 400
+    case.refuse_if(sigma > 100 and case.value("force", "no") == "no", "Ohnesorge")
 
 
 # 8 grains (type 3) in the water

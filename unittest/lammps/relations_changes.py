@@ -76,7 +76,7 @@ EXCEPTIONS = [
     (("renumbered",), lambda o: o.get("fluctuation", "none") != "none", "random numbers belong to atom IDs"),
     (TURNS, lambda o: o["model of"] == "vans", "the stream runs along x, and z is up"),
     (("grid 1 1 2",), lambda o: o.get("dim") == 2, "two dimensions"),
-    (TURNS, lambda o: o.get("look") == "virial" and (o["viscosity"] == "laplacian" or o["scheme"] in ("shift", "correction")),
+    (TURNS, lambda o: o.get("look") == "virial" and (o["viscosity"] == "laplacian" or o["scheme"] in ("shift", "pliant", "correction")),
      "forces that are not along the line of centres: of their virial LAMMPS has six numbers of nine"),
     (TURNS, lambda o: o.get("look") == "height", "a height is measured along +AXIS"),
     (("members",), lambda o: not o.get("clumps"), "no clumps"),

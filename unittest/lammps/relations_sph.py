@@ -1,17 +1,17 @@
-"""Scenes of pair_style sph/artVisc/tensCorr for relations.py: full boxes, tanks, columns that fall, channels, open ends, bodies."""
+"""Scenes of pair_style sph/artVisc/tensCorr for relations.py: full boxes, drops, tanks, columns that fall, channels, open ends, bodies."""
 import random
 from itertools import product
 
 from relations_scene import Scene, until_settled
 
 OPTIONS = {
-    "dim": [2, 2, 3], "wide": [1, 1, 1, 2], "space": ["full", "tank", "tank", "column", "channel", "ends", "body"],
+    "dim": [2, 2, 3], "wide": [1, 1, 1, 2], "space": ["full", "drop", "tank", "tank", "column", "channel", "ends", "body"],
     "scheme": ["plain", "delta", "shift", "shift", "pliant", "correction", "summation"], "volume": ["no", "no", "yes"], "fluids": [1, 1, 2],
     "kernel": ["wendland", "cubicspline"], "artVisc": ["no", "yes"], "tensCorr": ["no", "no", "yes"],
     "viscosity": ["no", "central", "laplacian"], "rheology": ["no", "no", "bingham", "carreau"], "filter": ["no", "no", "yes"],
     "state": ["Tait", "Tait", "tension no", "relativ", "absolut"],
     "wall": ["at rest", "slip", "suction no", "moving", "own"], "plane": ["no", "no", "plane", "region"], "gravity": ["no", "yes"],
-    "grains": ["no", "no", "yes"],
+    "grains": ["no", "no", "yes"], "tension": ["no", "no", "yes"],
     "look": ["nothing", "energy", "probe", "virial", "height"], "skin": [0.3, 0.15], "steps": [2, 5, 9],
 }
 WALLED = ("tank", "column", "channel", "body")
@@ -20,6 +20,10 @@ WALLED = ("tank", "column", "channel", "body")
 @until_settled
 def lawful(o, no):
     """What does not go together, by the pages."""
+    # surface tension
+    no(o["space"] == "drop", tension="yes")
+    no(o["tension"] == "yes", scheme="pliant" if o["scheme"] == "pliant" else "shift", volume="no", fluids=1, grains="no",
+       space={"full": "drop", "channel": "tank"}.get(o["space"], o["space"]), state="Tait" if o["state"] == "absolut" else o["state"])
     no(o["space"] in ("ends", "body"), dim=2)
     no(o["dim"] == 2, wide=1)
     no(o["scheme"] == "correction" and o["space"] not in ("full", "channel"), space="channel")
@@ -37,7 +41,7 @@ def lawful(o, no):
     no(o["space"] not in WALLED, wall="at rest")
     no(o["space"] == "body", wall="own")
     no(o["space"] != "body" and o["wall"] == "own" and o["scheme"] == "summation", wall="at rest")
-    no(o["space"] in ("full", "ends", "channel", "body"), plane="no")
+    no(o["space"] in ("full", "drop", "ends", "channel", "body"), plane="no")
     no(o["viscosity"] == "laplacian" and o["wall"] in ("moving", "own"), viscosity="central")
     no(o["look"] == "height" and (o["space"] not in ("tank", "column") or o["gravity"] == "no"), look="probe")
     no(o["viscosity"] == "no", rheology="no")
@@ -52,7 +56,7 @@ def lawful(o, no):
 # number of cells along x, y, z in two and three dimensions; which sides are periodic
 # (y twice as large with wide 2: so many ghosts that buffers are not large by chance)
 SIZES = {"full": ((20, 10, 1), (10, 8, 8)), "tank": ((20, 10, 1), (9, 8, 6)), "column": ((24, 10, 1), (12, 8, 7)),
-         "channel": ((20, 8, 1), (9, 8, 6)), "ends": ((16, 8, 1), None), "body": ((14, 9, 1), None)}
+         "drop": ((20, 14, 1), (11, 10, 10)), "channel": ((20, 8, 1), (9, 8, 6)), "ends": ((16, 8, 1), None), "body": ((14, 9, 1), None)}
 OPEN_X = ("column", "ends")
 BODY = [(x, y) for x in (5, 6, 7, 8) for y in (5, 6, 7)]
 
@@ -73,12 +77,21 @@ def kinds_of_cells(o):
         begin[0], end[0] = -4, 20
     cells = {c: 3 if o["space"] == "body" and c[:2] in BODY else 4 if o["fluids"] == 2 and c[up] >= size[up] // 2 else 1
              for c in product(*map(range, begin, end))}
+    if o["space"] == "drop":
+        cells = {c: t for c, t in cells.items() if in_drop(o, c)}
     walls = [(-3, 0)] * (o["space"] in WALLED) + [(size[up], size[up] + 3)] * (o["space"] == "channel")
     for first, last in walls:
         begin, end = [0, 0, 0], list(size)
         begin[up], end[up] = first, last
         cells.update({c: 2 for c in product(*map(range, begin, end))})
     return cells
+
+
+def in_drop(o, cell):
+    """Two drops, one of them across a periodic edge"""
+    size = size_of(o)[:o["dim"]]
+    middle = [sum((c + 0.5 - at * n) ** 2 for c, n, at in zip(cell, size, where)) for where in ((0.4, 0.4, 0.5), (0.9, 1.05, 0.9))]
+    return middle[0] < 4.2**2 or middle[1] < 1.6**2
 
 
 def box_of(o):
@@ -178,6 +191,9 @@ def commands(s, o, d, up, lo, hi, each):
     if o["plane"] == "region":
         s.define.append(f"region room block <block INF INF {'-0.6 INF INF INF' if flat else 'INF INF -0.6 INF'}>")
         s.fixes.append("fix plane fluid wall/region/sph room <L 0.6> <F 1.0>")
+    if o["tension"] == "yes":
+        angles = " contact 2 70" * walled + " 3 120" * (o["space"] == "body")
+        s.fixes.append(f"fix pull fluid sph/tension <{'F' if flat else 'k'} 1.0>{angles} force yes")
     s.fixes.append("fix move fluid nve/sph")
     s.fixes += ["fix roll grains nve/sphere", "fix couple grains sph/grains drag beetstra"] * grains
     s.fixes += ["fix flat all enforce2d"] * flat
@@ -185,6 +201,9 @@ def commands(s, o, d, up, lo, hi, each):
     look(s, o, d, up)
     s.columns = [("p", "xu yu zu"), ("V", "vx vy vz"), ("rho" + d, "c_rho"), ("P" + d, "f_p")]
     s.columns += [("drho" + d, "f_d")] * (o["scheme"] != "summation")
+    if o["tension"] == "yes":
+        s.columns += [("curvature", "f_pull[1]"), ("1", "f_pull[2]"), ("1", "f_pull[3] f_pull[4] f_pull[5]")]
+        s.globals += [("F", "f_pull[1] f_pull[2] f_pull[3]"), ("1", "f_pull[4]"), ("L" if flat else "area", "f_pull[5]")]
     s.columns += [("1", "f_couple[1]"), ("F", "f_couple[2] f_couple[3] f_couple[4]")] * grains
     s.globals += [("F", "f_couple[1] f_couple[2] f_couple[3]"), ("1", "f_couple[4]")] * grains
     s.dt, s.steps, s.tolerance = 0.01, o["steps"], 1e-8
@@ -193,7 +212,7 @@ def commands(s, o, d, up, lo, hi, each):
 def look(s, o, d, up):
     if o["look"] == "energy":
         s.fixes.append("compute en fluid sph/energy")
-        s.globals += [("E", f"c_en[{k}]") for k in (1, 3, 4, 5, 6)]
+        s.globals += [("E", f"c_en[{k}]") for k in (1, 3, 4, 5, 6, 8, 9)]
     elif o["look"] == "virial":
         s.fixes.append("compute vir all pressure NULL virial")
         s.globals += [("P" + d, "c_vir"), ("stress" + d, " ".join(f"c_vir[{k}]" for k in range(1, 7)))]

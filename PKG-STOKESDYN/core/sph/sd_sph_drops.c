@@ -1,25 +1,82 @@
 #include "sd_sph_drops.h"
 
-#include "sd_sph_tension_internal.h"
-
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-void sd_sph_find_drops(const sd_sph_film *f, int *parent)
+/* Particles of other pair styles, which have no volume here, are in no drop. */
+static int is_fluid(const sd_sph_film *f, int i)
 {
-  for (int i = 0; i <= f->all; i++) parent[i] = i;
-  sd_sph_loops_of_films()->links(f, parent);
+  return !(f->wall && f->wall[i]) && f->x4[4 * (size_t) i + 3] > 0.0;
+}
+
+/* The root of the tree of i; the way there is halved for the next who asks. */
+static int drops_root_of(int *parent, int i)
+{
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+/* Makes one tree of the points of two cells, which each are one, if any two of them are in reach. */
+static void drops_join(const sd_sph_film *f, const sd_cells *c, int first, int other, int *parent)
+{
+  const double reach = 2.0 * f->surface->h;
+  const int one = drops_root_of(parent, first), two = drops_root_of(parent, other);
+  if (one == two) return;
+  for (int i = first; i >= 0; i = c->next[i])
+    for (int j = other; j >= 0; j = c->next[j]) {
+      const double *x = f->x4 + 4 * (size_t) i, *y = f->x4 + 4 * (size_t) j;
+      const double d[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+      if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach)) continue;
+      parent[two] = one;
+      return;
+    }
+}
+
+/* Joins cells that are `ring` apart along one direction and not more along others, each pair once. */
+static void drops_join_ring(const sd_sph_film *f, const sd_cells *c, int ring, int *parent)
+{
+  const int up = f->surface->dimension == 3 ? ring : 0;
+  uint64_t number;
+  for (int i = 0; i < f->all; i++) {
+    if (!is_fluid(f, i) || c->next[i] >= 0) continue;    // of each cell the last one of its chain
+    int64_t at[3];
+    for (int d = 0; d < 3; d++) at[d] = sd_cells_along(c, f->x4[4 * (size_t) i + d] - c->lo[d]);
+    const int first = sd_cells_slot(c, at[0], at[1], at[2], &number)->first;
+    for (int z = 0; z <= up; z++)
+      for (int y = z > 0 ? -ring : 0; y <= ring; y++)
+        for (int x = z > 0 || y > 0 ? -ring : 1; x <= ring; x++) {
+          if (abs(x) < ring && abs(y) < ring && z < ring) continue;
+          const int other = sd_cells_slot(c, at[0] + x, at[1] + y, at[2] + z, &number)->first;
+          if (other >= 0) drops_join(f, c, first, other, parent);
+        }
+  }
+}
+
+/* All points of a cell are in reach of each other, and no point is of one that is more than two cells away. After
+ * the next cells nearly all of a drop is one tree, so that few pairs are asked for their distance. */
+void sd_sph_find_drops(const sd_sph_film *f, sd_cells *cells, int *parent)
+{
+  const double lo[3] = {0.0, 0.0, 0.0}, side = 2.0 * f->surface->h / sqrt(f->surface->dimension) * (1.0 - 1e-9);
+  sd_cells_clear(cells, lo, side);
+  for (int i = 0; i < f->all; i++) {
+    parent[i] = i;
+    if (!is_fluid(f, i)) continue;
+    sd_cells_add(cells, f->x4 + i, i);    // rows of four: x4[i + 3 i]
+    if (cells->next[i] >= 0) parent[i] = parent[cells->next[i]];
+  }
+  for (int ring = 1; ring <= 2; ring++) drops_join_ring(f, cells, ring, parent);
 }
 
 int sd_sph_name_drops(int all, int *parent, double *name)
 {
   int changed = 0;
   for (int i = 0; i < all; i++) {
-    const int root = sd_sph_root_of_drop(parent, i);
+    const int root = drops_root_of(parent, i);
     if (name[i] < name[root]) name[root] = name[i];
   }
   for (int i = 0; i < all; i++) {
-    const double of_drop = name[sd_sph_root_of_drop(parent, i)];
+    const double of_drop = name[drops_root_of(parent, i)];
     changed |= of_drop < name[i];
     name[i] = of_drop;
   }
@@ -32,8 +89,8 @@ int sd_sph_sum_drops(const sd_sph_film *f, int *parent, const double *name, cons
   int count = 0;
   for (int i = 0; i < f->all; i++) place[i] = -1;
   for (int i = 0; i < f->list->n; i++) {
-    if (!sd_sph_in_drop(f, i)) continue;
-    int *at = &place[sd_sph_root_of_drop(parent, i)];
+    if (!is_fluid(f, i)) continue;
+    int *at = &place[drops_root_of(parent, i)];
     if (*at < 0) {
       *at = count++;
       out[*at] = (sd_sph_drop){.name = name[i]};
@@ -83,8 +140,8 @@ int sd_sph_keep_momentum(const sd_sph_film *f, int *parent, const int *place, co
     for (int d = 0; d < 3; d++) mine[k].F[d] = whole->held > 0.0 ? 0.0 : whole->F[d] / whole->mass;
   }
   for (int i = 0; i < f->list->n; i++) {
-    if (!sd_sph_in_drop(f, i)) continue;
-    const sd_sph_drop *drop = &mine[place[sd_sph_root_of_drop(parent, i)]];
+    if (!is_fluid(f, i)) continue;
+    const sd_sph_drop *drop = &mine[place[drops_root_of(parent, i)]];
     for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] -= mass[i] * drop->F[d];
   }
   return drops;

@@ -5,13 +5,14 @@
 #ifndef SD_SPH_DROPS_H
 #define SD_SPH_DROPS_H
 
+#include "sd_cells.h"
 #include "sd_sph_tension.h"
 
 SD_BEGIN_C
 
-/* parent [all+1]: each particle, also those that are only neighbours, becomes part of the tree of its drop.
- * From pairs of fluid of the list, in its first parts. */
-void sd_sph_find_drops(const sd_sph_film *f, int *parent);
+/* parent [all]: each particle, also those that are only neighbours, becomes part of the tree of its drop. Of f
+ * nothing but surface, x4 and wall is read. cells: created for `all` points or more. */
+void sd_sph_find_drops(const sd_sph_film *f, sd_cells *cells, int *parent);
 
 /* One round of the names of drops on several ranks: the smallest name [all] of the particles of a tree here
  * becomes that of all of them; before the first each particle has a name of its own. Returns whether one has

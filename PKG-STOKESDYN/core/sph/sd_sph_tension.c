@@ -8,6 +8,11 @@
 #include <math.h>
 #include <string.h>
 
+static const sd_sph_film_loops *loops_of_films(void)
+{
+  return SD_KERNELS_OF(sd_sph_film_loops, baseline, sd_isa_of(SD_ISA_BEST));
+}
+
 // --- what a plane surface hides --------------------------------------------------------------------
 
 /* Over the plane at z of h = 1, with y from its middle: the integral of W, and that of y^2 W over 2 (D-1). */
@@ -117,7 +122,7 @@ static double own_share(const sd_sph_film *f, int i)
 
 void sd_sph_film_sums(const sd_sph_film *f, double *sums)
 {
-  sd_sph_loops_of_films()->sums(f, sums);
+  loops_of_films()->sums(f, sums);
   const double W0 = sd_sph_W(f->surface->kernel, f->surface->dimension, 0.0, f->surface->h);
   for (int i = 0; i < f->list->n; i++)
     sums[8 * (size_t) i + (is_wall(f, i) ? 4 : 0)] += W0 * f->x4[4 * (size_t) i + 3];
@@ -134,7 +139,7 @@ void sd_sph_film_wetness(const sd_sph_film *f, const double *sums, double *wet)
 void sd_sph_film_wet_walls(const sd_sph_film *f, const double *contact, const double *sums, double *beside)
 {
   memset(beside, 0, sizeof(double) * 8 * (size_t) f->list->n);
-  sd_sph_loops_of_films()->wet_walls(f, contact, sums, beside);
+  loops_of_films()->wet_walls(f, contact, sums, beside);
 }
 
 static double length3(const double *a)
@@ -266,7 +271,7 @@ void sd_sph_film_curvatures(const sd_sph_film *f, const double *whole, const dou
                             double *kappa)
 {
   double gradient[9];
-  sd_sph_loops_of_films()->turns(f, surface, at_wall, v4, skin, rows);
+  loops_of_films()->turns(f, surface, at_wall, v4, skin, rows);
   for (int i = 0; i < f->list->n; i++) {
     kappa[i] = 0.0;
     if (!(surface[4 * (size_t) i + 3] > 0.0)) continue;
@@ -280,7 +285,7 @@ void sd_sph_film_curvatures(const sd_sph_film *f, const double *whole, const dou
 void sd_sph_film_means(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin,
                        const double *rows, const double *k, double *mean)
 {
-  sd_sph_loops_of_films()->means(f, skin, k, mean);
+  loops_of_films()->means(f, skin, k, mean);
   for (int i = 0; i < f->list->n; i++) {
     const double w = surface[4 * (size_t) i + 3], own = w > 0.0 ? own_share(f, i) * w : 0.0;
     mean[i] = w > 0.0 ? (mean[i] + own * k[i]) / (rows[SD_SPH_SKIN_SUMS * (size_t) i + 15] + own) : 0.0;
@@ -302,7 +307,7 @@ void sd_sph_film_inwards(const sd_sph_film *f, const double *surface, const sd_s
                          double *rows, const double *ks, double *k)
 {
   sd_sph_film_means(f, surface, skin, rows, ks, k);
-  sd_sph_loops_of_films()->inwards(f, surface, skin, ks, rows, k);
+  loops_of_films()->inwards(f, surface, skin, ks, rows, k);
   for (int i = 0; i < f->list->n; i++) {
     const double w = surface[4 * (size_t) i + 3];
     if (w > 0.0) k[i] = w * ks[i] + (1.0 - w) * k[i];

@@ -14,32 +14,12 @@ typedef struct {
   /* of w > 0: rows [SD_SPH_SKIN_SUMS]  M | N | sum w V W | sum w V g (v.d)/r^2 d | 0; and fills the skin */
   void (*turns)(const sd_sph_film *, const double *surface, const double *at_wall, const double *v4,
                 const sd_sph_skin *, double *rows);
-  /* of w > 0: sum w V W k [n], without itself */
+  /* sum w V W k [n] of w > 0, without itself; 0 of others */
   void (*means)(const sd_sph_film *, const sd_sph_skin *, const double *k, double *sums);
   /* of fluid with w = 0: mean [n] of k, 0 where no surface is in reach; and sum w V W to its row */
   void (*inwards)(const sd_sph_film *, const double *surface, const sd_sph_skin *, const double *k,
                   double *rows, double *mean);
-  /* links particles of fluid nearer than 2 h, each pair from one of its sides; parent [all+1]: sd_sph_drops.h */
-  void (*links)(const sd_sph_film *, int *parent);
 } sd_sph_film_loops;
 SD_KERNEL_TABLES(sd_sph_film_loops, sd_sph_film_loops);
-
-static inline const sd_sph_film_loops *sd_sph_loops_of_films(void)
-{
-  return SD_KERNELS_OF(sd_sph_film_loops, baseline, sd_isa_of(SD_ISA_BEST));
-}
-
-/* Particles of other pair styles, which have no volume here, are in no drop. */
-static inline int sd_sph_in_drop(const sd_sph_film *f, int i)
-{
-  return !(f->wall && f->wall[i]) && f->x4[4 * (size_t) i + 3] > 0.0;
-}
-
-/* The root of the tree of i; the way there is halved for the next who asks. */
-static inline int sd_sph_root_of_drop(int *parent, int i)
-{
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
 
 #endif

@@ -160,6 +160,7 @@ INLINE void film_turns(const sd_sph_film *f, const double *surface, const double
 INLINE double weighed(const sd_sph_skin *skin, size_t from, size_t to, const double *k)
 {
   vec sum = all(0.0);
+  if (from == to) return 0.0;
   for (size_t at = from; at < to; at += LANES) {
     const int *j = skin->neighbor + at;
     sum += load_any(skin->weight + at) * (vec) LANEWISE(VALUE_OF, k);
@@ -169,9 +170,7 @@ INLINE double weighed(const sd_sph_skin *skin, size_t from, size_t to, const dou
 
 static void film_means(const sd_sph_film *f, const sd_sph_skin *skin, const double *k, double *sums)
 {
-  for (int i = 0; i < f->list->n; i++)
-    if (skin->first[i] < skin->first[i + 1])
-      sums[i] = weighed(skin, skin->first[i], skin->first[i + 1], k);
+  for (int i = 0; i < f->list->n; i++) sums[i] = weighed(skin, skin->first[i], skin->first[i + 1], k);
 }
 
 INLINE void film_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin, const double *k,
@@ -195,33 +194,6 @@ INLINE void film_inwards(const sd_sph_film *f, const double *surface, const sd_s
     const double around = sum_of(whole);
     rows[SD_SPH_SKIN_SUMS * (size_t) i + 15] = around;
     mean[i] = around > 1e-9 ? sum_of(sum) / around : 0.0;
-  }
-}
-
-/* Makes one tree of those of i, which is `mine`, and j, if they are in reach; returns its root. */
-INLINE int link(const sd_sph_film *f, int *parent, int i, int mine, int j)
-{
-  const double *x = f->x4 + 4 * (size_t) i, *y = f->x4 + 4 * (size_t) j, reach = 2.0 * f->surface->h;
-  const double d[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
-  if (!sd_sph_in_drop(f, j) || !(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach)) return mine;
-  const int other = sd_sph_root_of_drop(parent, j);
-  if (other < mine) return parent[mine] = other;
-  parent[other] = mine;
-  return mine;
-}
-
-#define PARENT_OF(k, parent) (parent)[j[k]]
-static void film_links(const sd_sph_film *f, int *parent)
-{
-  for (int i = 0; i < f->list->n; i++) {
-    if (!sd_sph_in_drop(f, i)) continue;
-    int mine = sd_sph_root_of_drop(parent, i);
-    for (int at = 0; at < f->list->own[i]; at += LANES) {
-      const int *j = NEXT(f, i);
-      unsigned others = bits((yes_no) LANEWISE(PARENT_OF, parent) != same(mine));
-      for (int k = 0; others; k++, others >>= 1)
-        if (others & 1u) mine = link(f, parent, i, mine, j[k]);
-    }
   }
 }
 
@@ -264,6 +236,5 @@ static void all_inwards(const sd_sph_film *f, const double *surface, const sd_sp
   BY_KERNEL(f, film_inwards, surface, skin, k, rows, mean);
 }
 
-const sd_sph_film_loops SD_KERNELS(sd_sph_film_loops) = {all_sums,   all_wet_walls, all_turns,
-                                                         film_means, all_inwards,   film_links};
+const sd_sph_film_loops SD_KERNELS(sd_sph_film_loops) = {all_sums, all_wet_walls, all_turns, film_means, all_inwards};
 #endif

@@ -6,6 +6,7 @@
 
 #include "check.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { MOST = 6000 };
@@ -76,6 +77,14 @@ static void find_neighbours(drop *s, int walls)
   for (int d = 0; d < 3; d++) s->x4[4 * s->n + d] = 1e10;
   s->list = (sd_sph_both){s->n, s->neighbor, s->own, s->count};
   s->film = (sd_sph_film){&s->plane, &s->list, s->n, s->x4, walls ? s->wall : NULL, NULL, NULL};
+}
+
+static void find_drops(drop *s, int *parent)
+{
+  sd_cells cells = {0};
+  assert_int_equal(sd_cells_create(&cells, s->n), SD_OK);
+  sd_sph_find_drops(&s->film, &cells, parent);
+  sd_cells_free(&cells);
 }
 
 /* Up to the curvatures; angle: of all walls. */
@@ -243,6 +252,29 @@ static void the_deep_is_out_of_reach_and_bears_nothing(void **state)
   for (int i = 0; i < 3 * s->n; i++) CHECK_NEAR(s->F[i], F[i], 1e-14);
 }
 
+/* Its mean is its own, and nothing is read that nobody has written. */
+static void a_lone_particle_has_its_own_curvature(void **state)
+{
+  (void) state;
+  drop *s = begin(2, 0.2);
+  add(s, 0.0, 0.0, 0.0, 0.01, 0);
+  add(s, 0.1, 0.0, 0.0, 0.01, 0);
+  find_neighbours(s, 0);
+  look(s, 0.0);
+  assert_true(s->surface[3] > 0.0 && s->surface[7] > 0.0);
+  double mean[2] = {NAN, NAN};
+  s->surface[7] = 0.0;    // as of a particle inside
+  free(s->skin.neighbor);
+  free(s->skin.weight);
+  const size_t room = sd_sph_skin_size(&s->film, s->surface);
+  s->skin = (sd_sph_skin){s->first, malloc(sizeof(int) * room), malloc(sizeof(double) * room)};
+  sd_sph_film_curvatures(&s->film, s->whole, s->surface, NULL, s->v4, &s->skin, s->rows, s->kappa);
+  s->kappa[0] = 0.7;
+  sd_sph_film_means(&s->film, s->surface, &s->skin, s->rows, s->kappa, mean);
+  CHECK_NEAR(mean[0], 0.7, 1e-15);
+  CHECK_NEAR(mean[1], 0.0, 0.0);
+}
+
 /* <k> of a particle is the sum over its neighbours, one by one. */
 static void means_are_sums_over_the_surface(void **state)
 {
@@ -378,7 +410,7 @@ static void a_free_drop_keeps_its_momentum_and_a_held_one_is_left_alone(void **s
     held[i] = i == first + 3;
     for (int d = 0; d < 3; d++) F[3 * i + d] = s->F[3 * i + d] = uniform(&seed, -1.0, 1.0);
   }
-  sd_sph_find_drops(&s->film, parent);
+  find_drops(s, parent);
   assert_true(sd_sph_name_drops(s->n, parent, name));
   assert_false(sd_sph_name_drops(s->n, parent, name));
   const int count = sd_sph_sum_drops(&s->film, parent, name, mass, held, F, mine, place);
@@ -401,6 +433,40 @@ static void a_free_drop_keeps_its_momentum_and_a_held_one_is_left_alone(void **s
   }
 }
 
+/* Random points, where many gaps are near 2 h: as if every pair had been asked. */
+static void drops_are_those_of_all_pairs(void **state)
+{
+  (void) state;
+  for (int dimension = 2; dimension <= 3; dimension++) {
+    uint64_t seed = 5;
+    static int parent[MOST], name[MOST];
+    drop *s = begin(dimension, 0.2);
+    for (int i = 0; i < (dimension == 3 ? 350 : 150); i++)
+      add(s, uniform(&seed, -3.0, 3.0), uniform(&seed, -3.0, 3.0), dimension == 3 ? uniform(&seed, -0.6, 0.6) : 0.0, 0.01,
+          i % 50 == 7);
+    s->film = (sd_sph_film){&s->plane, NULL, s->n, s->x4, s->wall, NULL, NULL};
+    find_drops(s, parent);
+    for (int i = 0; i < s->n; i++) name[i] = i;
+    for (int changed = 1; changed;) {
+      changed = 0;
+      for (int i = 0; i < s->n; i++)
+        for (int j = 0; j < i; j++)
+          if (!s->wall[i] && !s->wall[j] && name[i] != name[j] && distance(s, i, j) < 0.4) {
+            name[i] = name[j] = name[i] < name[j] ? name[i] : name[j];
+            changed = 1;
+          }
+    }
+    int drops = 0;
+    for (int i = 0; i < s->n; i++) {
+      while (parent[parent[i]] != parent[i]) parent[i] = parent[parent[i]];
+      drops += !s->wall[i] && name[i] == i;
+    }
+    for (int i = 0; i < s->n; i++)
+      for (int j = 0; j < i; j++) assert_int_equal(parent[i] == parent[j], name[i] == name[j]);
+    assert_true(drops > 20 && drops < s->n / 2);
+  }
+}
+
 /* Two parts of one drop, of one name, are added before the force is given back. */
 static void parts_of_a_drop_on_two_ranks_are_one(void **state)
 {
@@ -416,7 +482,7 @@ static void parts_of_a_drop_on_two_ranks_are_one(void **state)
     mass[i] = 2.0;
     F[3 * i] = 1.0;
   }
-  sd_sph_find_drops(&s->film, parent);
+  find_drops(s, parent);
   const int count = sd_sph_sum_drops(&s->film, parent, name, mass, held, F, mine, place);
   everywhere[0] = (sd_sph_drop){5.0, {-1.0 * s->n, 0.0, 0.0}, 3.0, 0.0};
   everywhere[1] = mine[0];
@@ -441,11 +507,13 @@ int main(void)
       cmocka_unit_test(a_sphere_has_two_over_its_radius_and_a_jet_one),
       cmocka_unit_test(means_keep_a_uniform_curvature),
       cmocka_unit_test(means_are_sums_over_the_surface),
+      cmocka_unit_test(a_lone_particle_has_its_own_curvature),
       cmocka_unit_test(the_deep_is_out_of_reach_and_bears_nothing),
       cmocka_unit_test(a_uniform_curvature_pushes_as_a_pressure),
       cmocka_unit_test(friction_of_the_surface_keeps_momentum_and_its_moment_and_takes_energy),
       cmocka_unit_test(a_wedge_with_its_contact_angle_is_plane),
       cmocka_unit_test(a_free_drop_keeps_its_momentum_and_a_held_one_is_left_alone),
+      cmocka_unit_test(drops_are_those_of_all_pairs),
       cmocka_unit_test(parts_of_a_drop_on_two_ranks_are_one),
       cmocka_unit_test(bounds_have_their_formulas),
   };
