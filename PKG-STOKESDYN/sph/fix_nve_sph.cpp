@@ -1,18 +1,15 @@
 #include "fix_nve_sph.h"
 
 #include "pair_sph_artvisc_tenscorr.h"
-#include "ranks.h"
 #include "sph.h"
 
 #include "atom.h"
 #include "update.h"
 
-#include <cstring>
-
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-FixNveSph::FixNveSph(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg)
+FixNveSph::FixNveSph(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg), end(lmp)
 {
   keywords(narg, arg).parse({});
   time_integrate = 1;
@@ -30,8 +27,7 @@ int FixNveSph::setmask()
  * run. Otherwise v. */
 void FixNveSph::setup_pre_exchange()
 {
-  const End now = end_now();
-  goes_on = end.step == now.step && end.velocities == now.velocities;
+  goes_on = end.still_stands(groupbit);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     for (int d = 0; d < 3; d++)
@@ -85,40 +81,19 @@ void FixNveSph::final_integrate()
 
 void FixNveSph::post_run()
 {
-  end = end_now();
-}
-
-/* Rows of common/resume.h would cost 64 bytes an atom and a pass over them; velocities alone decide
- * here, and a sum of hashes has no order, so 16 bytes in all will do on any number of ranks. */
-FixNveSph::End FixNveSph::end_now() const
-{
-  uint64_t mine = 0, sum = 0;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit)) continue;
-    uint64_t hash = (uint64_t) atom->tag[i];
-    for (int d = 0; d < 3; d++) {
-      uint64_t bits;
-      memcpy(&bits, &atom->v[i][d], sizeof(bits));
-      hash = (hash ^ bits) * 0x9E3779B97F4A7C15u;
-      hash ^= hash >> 29;
-    }
-    mine += hash;
-  }
-  for (const uint64_t part : from_all<uint64_t>(world, {mine})) sum += part;
-  return {(double) update->ntimestep, sum};
+  end.record(groupbit);
 }
 
 void FixNveSph::write_state(NamedState &state)
 {
   // In mid-run, or after a run, there is a state that a run can go on from; before any there is none.
-  const End now = update->whichflag == 1 ? end_now() : end;
-  state.put("step", now.step);
-  state.put_bits("velocities", now.velocities);
+  if (update->whichflag == 1) end.record(groupbit);
+  end.write(state);
 }
 
 void FixNveSph::read_state(const NamedState &state)
 {
-  end = {state.get("step", -1.0), state.get_bits("velocities", 0)};
+  end.read(state);
 }
 
 FixNveSphStationary::FixNveSphStationary(LAMMPS *lmp, int narg, char **arg) :

@@ -3,6 +3,7 @@
 #ifndef SD_FIX_NVE_SPH_H
 #define SD_FIX_NVE_SPH_H
 
+#include "end_of_run.h"
 #include "sph.h"
 
 #include <cstdint>
@@ -30,12 +31,7 @@ class FixNveSph : public SphFix {
   /* of the atoms and their ghosts: vest is the difference to v, not yet the estimate itself */
   bool relative = false;
 
-  /* How the last run ended: the step, and the sum of a hash of all velocities of the group. */
-  struct End {
-    double step;
-    uint64_t velocities;
-  } end = {-1.0, 0};
-  End end_now() const;
+  EndOfRun end;
   void write_state(NamedState &) override;
   void read_state(const NamedState &) override;
 };

@@ -23,7 +23,7 @@ using namespace StokesDyn;
 static constexpr double MOST = 0.65, CLOSE = 0.74;
 
 FixSphGrains::FixSphGrains(LAMMPS *lmp, int narg, char **arg) :
-    SphFix(lmp, narg, arg), rows(1), shown(4)
+    SphFix(lmp, narg, arg), rows(1), shown(4), end(lmp)
 {
   if (!atom->radius_flag || !atom->rmass_flag)
     voice.fail("atoms have no radius and no mass of their own: use atom_style hybrid sph sphere");
@@ -97,7 +97,7 @@ void FixSphGrains::parse_hindrance(Keywords &in)
 
 int FixSphGrains::setmask()
 {
-  return FixConst::POST_FORCE;
+  return FixConst::PRE_EXCHANGE | FixConst::POST_FORCE | FixConst::POST_RUN;
 }
 
 // --- at the beginning of a run -------------------------------------------------------------------

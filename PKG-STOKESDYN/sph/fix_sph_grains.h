@@ -4,6 +4,7 @@
 #ifndef SD_FIX_SPH_GRAINS_H
 #define SD_FIX_SPH_GRAINS_H
 
+#include "end_of_run.h"
 #include "sd_sph_grains.h"
 #include "sph.h"
 
@@ -19,8 +20,10 @@ class FixSphGrains : public SphFix {
   ~FixSphGrains() override;
   int setmask() override;
   void init() override;
-  void setup(int vflag) override { post_force(vflag); }
+  void setup_pre_exchange() override;
+  void setup(int vflag) override;
   void post_force(int) override;
+  void post_run() override;
   double compute_vector(int) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
@@ -41,6 +44,8 @@ class FixSphGrains : public SphFix {
  protected:
   bool restored() const override { return filled != 0.0; }
   std::vector<SavedNumbers> saved() override { return {{"filled", &filled}}; }
+  void write_state(NamedState &) override;
+  void read_state(const NamedState &) override;
 
  private:
   // settings
@@ -55,6 +60,10 @@ class FixSphGrains : public SphFix {
   // kept with atoms: phi; phi, force of the water on grains or of grains on water
   AtomArray rows, shown;
   double filled = 0.0;
+  EndOfRun end;
+  /* no velocity of grains has changed since the last run */
+  bool same_velocities = false;
+  bool resumes() const;
 
   // a step
   sd_cells cells = {};
@@ -70,6 +79,8 @@ class FixSphGrains : public SphFix {
   void check_order() const;
   void find_held();
   void recall();
+  void weigh();
+  void sum_fractions();
   void displace();
   void list_particles();
   void look_at_places();

@@ -74,6 +74,32 @@ void FixSphGrains::find_fractions()
     list_particles();
   else
     look_at_places();
+  weigh();
+  if (!(update->setupflag && resumes())) sum_fractions();
+  if (update->setupflag && filled == 0.0 && !fills) {    // the volumes had no phi yet
+    weigh();
+    sum_fractions();
+  }
+  mean_phi = mean_of(phi, 1);
+  check_fractions();
+  if (update->setupflag) displace();
+}
+
+void FixSphGrains::sum_fractions()
+{
+  const sd_sph_around list = around();
+  std::vector<double> found(points.size() + 1, 0.0);
+  sd_sph_grain_fractions(&list, V.data(), volume.data(), weight.data(), wet.data(), found.data());
+  std::vector<double> all = at_atoms(found, 1);
+  reverse(all.data(), 1);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (all[i] != 0.0 || rows.has(i)) *rows.give(i) = all[i];
+  recall();
+}
+
+/* What grains are, and the weights of the water around them. */
+void FixSphGrains::weigh()
+{
   const size_t n = grains.size(), m = points.size();
   a.resize(n + 1);
   V.resize(n + 1);
@@ -92,20 +118,9 @@ void FixSphGrains::find_fractions()
   weight.resize(particle.size() + 1);
   wet.resize(n + 1);
   own.resize(n + 1);
-  std::vector<double> found(m + 1, 0.0);
   sd_sph_grain_weights(law.kernel, law.h, &list, grain_places.data(), places.data(), volume.data(),
                        walls.data(), weight.data(), wet.data());
-  sd_sph_grain_fractions(&list, V.data(), volume.data(), weight.data(), wet.data(), found.data());
   sd_sph_grain_shares(&list, V.data(), volume.data(), weight.data(), wet.data(), own.data());
-
-  std::vector<double> all = at_atoms(found, 1);
-  reverse(all.data(), 1);
-  for (int i = 0; i < atom->nlocal; i++)
-    if (all[i] != 0.0 || rows.has(i)) *rows.give(i) = all[i];
-  recall();
-  mean_phi = mean_of(phi, 1);
-  check_fractions();
-  if (update->setupflag) displace();
 }
 
 /* The volume of the particles stays, and so all that has been found with it. */
@@ -136,7 +151,50 @@ void FixSphGrains::divide_rates(const double *order, int columns, bool shifts, d
   sd_sph_grain_rates(atom->nlocal, phi.data(), order, columns, shifts, rate);
 }
 
+// --- a run that goes on ---------------------------------------------------------------------------
+
+void FixSphGrains::setup_pre_exchange()
+{
+  same_velocities = end.still_stands(groupbit);
+}
+
+/* Then phi and the forces of its last step stand, which had velocities at half step. */
+bool FixSphGrains::resumes() const
+{
+  return same_velocities && pair->resumes();
+}
+
+void FixSphGrains::post_run()
+{
+  end.record(groupbit);
+}
+
+void FixSphGrains::write_state(NamedState &state)
+{
+  if (update->whichflag == 1) end.record(groupbit);
+  end.write(state);
+}
+
+void FixSphGrains::read_state(const NamedState &state)
+{
+  end.read(state);
+}
+
 // --- a step --------------------------------------------------------------------------------------
+
+void FixSphGrains::setup(int vflag)
+{
+  if (!resumes()) {
+    post_force(vflag);
+    return;
+  }
+  std::fill_n(total, 3, 0.0);
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 3; d++) {
+      atom->f[i][d] += shown[i][1 + d];
+      if (atom->mask[i] & groupbit) total[d] += shown[i][1 + d];
+    }
+}
 
 void FixSphGrains::post_force(int /*vflag*/)
 {

@@ -106,6 +106,8 @@ class PairSph : public LAMMPS_NS::Pair {
   /* [6 n] of each owned particle: sd_sph_moments. Not inside compute; false: no force has been
    * computed yet for these atoms, so there is no list of them. */
   bool moments(std::vector<double> &M);
+  /* Does this run go on where the last one ended? */
+  bool resumes() const;
   /* the kernel, for any place */
   sd_sph_kernel kernel() const { return model.kernel; }
   int dimension() const { return model.dimension; }
@@ -214,7 +216,6 @@ class PairSph : public LAMMPS_NS::Pair {
   void sum_rates(double margin);
   void sum_middle(double margin);
   void close_sums();
-  bool resumes() const;
   void sum_densities(int bit, bool shepard);
   void wall_particles();
   const double *spins_of_walls();

@@ -309,10 +309,9 @@ void PairSph::close_sums()
   sd_sph_diffusion(&model, &close, &particles, rate.data());
 }
 
-/* Does this run go on where the last one ended? */
 bool PairSph::resumes() const
 {
-  bool all = state->filled();
+  bool all = !state || state->filled();
   for (const auto *fix : integrators) all = all && fix->resumes();
   return all;
 }
@@ -357,6 +356,7 @@ void PairSph::pressures_of_all()
   for (auto *fix : pressures)
     sd_sph_keep_size(&fix->state, n, rho, atom->mask, fix->groupbit);
   look_at_densities(n);
+  std::fill_n(P.data(), n, 0.0);    // of atoms that are no particles as well
   for (auto *fix : pressures)
     sd_sph_pressures(&fix->state, n, rho, atom->mask, fix->groupbit, P.data());
   sd_sph_pack_pressures(&model, n, P.data(), background(), rho, x4.data());

@@ -80,7 +80,6 @@ EXCEPTIONS = [
      "forces that are not along the line of centres: of their virial LAMMPS has six numbers of nine"),
     (TURNS, lambda o: o.get("look") == "height", "a height is measured along +AXIS"),
     (("members",), lambda o: not o.get("clumps"), "no clumps"),
-    (CUTS, lambda o: o.get("grains") == "yes", "fix sph/grains finds the drag anew when a run begins, with the velocities of that moment"),
     (("pair style twice",), lambda o: o.get("grains") == "yes" and o["space"] == "tank",
      "the volume of wall particles is that of the pressure of the step before, and of the input in the first"),
     (CUTS + ("pair style twice",), lambda o: o.get("space") == "body", "fix rigid ... gravity of LAMMPS begins each run with half a step without weight"),

@@ -2,63 +2,9 @@
 import numpy as np
 import pytest
 
+from grains_tools import H, brown_lawler, of_bed, scene, singles
 from host import allowed
 from sph_tools import by_id, fix_by_id, mpirun, read_dump, run, start
-
-DX, H = 1.0, 2.0
-
-
-def brown_lawler(Re):
-    return 24 * (1 + 0.15 * Re**0.681) + 0.407 * Re * Re / (Re + 8710)
-
-
-def scene(size, mu, c, dt, fix, grains, diameter=0.5, boundary="p p p", density=2.65, pair="central shift yes", gravity="", floor=0, newton="on",
-          before_fix="", mover="fix mg grains nve/sphere", delta=0.1):
-    """Water (type 1) fills size[0] x size[1] x size[2] spacings, with `floor` rows of wall (type 3) below; grains (type 2): commands."""
-    x, y, z = size
-    return f"""
-    units lj
-    newton {newton}
-    atom_style hybrid sph sphere
-    atom_modify map array sort 0 0
-    boundary {boundary}
-    lattice sc 1 origin 0.5 0.5 0.5
-    region box block 0 {x} 0 {y} {-floor} {z} units box
-    create_box 3 box
-    region water block 0 {x} 0 {y} 0 {z - (4 if floor else 0)} units box
-    region floor block 0 {x} 0 {y} {-floor} 0 units box
-    create_atoms 1 region water
-    {"create_atoms 3 region floor" if floor else ""}
-    {grains}
-    set type 2 diameter {diameter} density {density}
-    set type 1*3 sph/rho 1
-    set type 1 mass 1
-    set type 3 mass 1
-    group water type 1
-    group grains type 2
-    group floor type 3
-    group sph type 1 3
-    pair_style hybrid/overlay sph/artVisc/tensCorr wendland {H} viscosity {mu} {pair} zero 1
-    pair_coeff * * zero
-    pair_coeff 1 1 sph/artVisc/tensCorr c {c} deltap 1
-    pair_coeff 1 3 sph/artVisc/tensCorr
-    pair_coeff 3 3 sph/artVisc/tensCorr c {c} deltap 1
-    comm_modify vel yes
-    neighbor 0.3 bin
-    neigh_modify delay 0 every 1
-    timestep {dt}
-    fix eos sph sph/pressure Tait {c * c / 7} 1 7
-    fix den sph sph/density/continuity delta {delta} volume yes
-    {f"fix wall floor wall/adami/sph gravity {gravity}" if floor else ""}
-    fix mw water nve/sph
-    {mover}
-    {before_fix}
-    fix g grains sph/grains {fix}
-    """
-
-
-def singles(places):
-    return "\n".join("create_atoms 2 single %.17g %.17g %.17g units box" % tuple(p) for p in places)
 
 
 def forces_on_grains(lmp):
@@ -157,27 +103,6 @@ def test_a_held_grain_bears_the_weight_of_the_water_in_its_place(place):
 BLOCK = "lattice sc 1 origin 0.5 0.5 0.5\nregion bed block 0 5 0 5 4 12 units box\ncreate_atoms 2 region bed"
 
 
-def richardson_zaki(Re, e):
-    """w_0/w and the Reynolds number of w_0."""
-    ratio = 1.0
-    for _ in range(200):
-        n = min(4.65, max(2.39, 4.4 * (Re * ratio) ** (-0.03 if Re * ratio < 1 else -0.1)))
-        ratio = e ** (1 - n)
-    return ratio
-
-
-def of_bed(law, Re, e):
-    """F/(3 pi mu d w) as published."""
-    phi, s = 1 - e, e * Re
-    if law == "beetstra":
-        inertia = (1 / e + 3 * phi * e + 8.4 * s**-0.343) / (1 + 10 ** (3 * phi) * s ** (-(1 + 4 * phi) / 2))
-        return 10 * phi / e**2 + e**2 * (1 + 1.5 * phi**0.5) + 0.413 * s / (24 * e**2) * inertia
-    if law == "brown_lawler":
-        ratio = richardson_zaki(Re, e)
-        return brown_lawler(Re * ratio) / 24 * ratio
-    return 150 * phi / (18 * e * e) + 1.75 * Re / (18 * e)
-
-
 @pytest.mark.parametrize("diameter", [0.8, 1.0], ids=["phi 0.27", "phi 0.52"])
 @pytest.mark.parametrize("law", ["ergun", "beetstra", "brown_lawler"])
 def test_a_fixed_bed_has_the_pressure_drop_of_its_law(law, diameter):
@@ -211,35 +136,6 @@ def test_a_suspension_settles_as_its_law_has_it(law):
     lmp.close()
     assert abs((v[kind == 1].mean() - v[kind == 2].mean()) / w - 1) < 0.01
     assert v[kind == 1].mean() > 0.05 and abs((m * v).sum()) < 1e-12 * (m * np.abs(v)).sum()
-
-
-@pytest.mark.parametrize("law, phi, w", [("brown_lawler", 0.2, 0.05), ("beetstra", 0.4, 0.02)])
-def test_a_suspension_settles_in_a_tank_with_the_flow_back(law, phi, w):
-    """From the floor to the surface, heavier than water by F(w): the grains of its middle fall at (1 - phi) w, with the law's slip w, as the water between
-    them rises by phi w. Over the 400 steps, in which sound of the beginning goes up and down twice: 5 %."""
-    mu, g, c, dt, high = 0.1, 0.1, 8, 0.05, 16
-    d = (phi * 6 / np.pi) ** (1 / 3)
-    density = 1 + 3 * np.pi * mu * d * w * of_bed(law, w * d / mu, 1 - phi) / (g * np.pi / 6 * d**3)
-    bed = f"lattice sc 1 origin 0.5 0.5 0.5\nregion bed block 0 5 0 5 0 {high} units box\ncreate_atoms 2 region bed"
-    lmp = start()
-    text = scene((5, 5, high + 4), mu, c, dt, "drag " + law, bed, d, "p p f", density=density, gravity=f"0 0 {-g}", floor=4, before_fix=f"""
-    fix down all gravity {g} vector 0 0 -1
-    fix bottom grains wall/gran hooke 30 NULL 1 NULL 0 0 zplane 0 NULL
-    variable rho atom (1+7*{g}*{1 + phi * (density - 1)}*({high}-z)/{c * c})^(1/7)
-    set group sph sph/rho v_rho
-    set group sph mass v_rho
-    displace_atoms grains random 0.1 0.1 0.1 77 units box
-    velocity grains set 0 0 {-(1 - phi) * w} units box
-    velocity water set 0 0 {phi * w} units box""")
-    run(lmp, text.replace("zero 1", "gran/hooke 30 NULL 1 NULL 0 0").replace("pair_coeff * * zero", "pair_coeff * * none\npair_coeff 2 2 gran/hooke"))
-    run(lmp, "run 0")
-    before = by_id(lmp, "x", 3)[:, 2]
-    run(lmp, "run 400")
-    after, kind = by_id(lmp, "x", 3)[:, 2], by_id(lmp, "type")
-    lmp.close()
-    middle = (kind == 2) & (before > 5) & (before < high - 5)
-    speed = (before - after)[middle].mean() / (400 * dt)
-    assert abs(speed / ((1 - phi) * w) - 1) < 0.05, speed / ((1 - phi) * w)
 
 
 def test_the_water_of_a_tank_rises_by_the_volume_of_grains_that_are_lowered_into_it():
@@ -351,16 +247,38 @@ def test_momentum_of_water_and_grains_is_kept_on_any_number_of_ranks(ranks, newt
     assert np.minimum(off, np.abs(8 - off)).max() < 1e-11 and np.abs(m - t["mass"]).max() < 1e-12
 
 
-def test_a_broken_run_is_the_unbroken_one(tmp_path):
+@pytest.mark.parametrize("runs", ["run 40", "run 15\nrun 25", "run 20\nrun 0\nrun 20", "run 20\nwrite_restart {file}", "run 20 every 7 \"write_restart {file}\""],
+                         ids=["one", "two", "with none between", "restart", "restart from within"])
+def test_a_broken_run_is_the_unbroken_one(runs, tmp_path):
+    """In the middle of a fall, to rounding: the forces of the last step stand, which had velocities at half step. Grains have no pressure."""
     lmp = start()
-    run(lmp, scene(**CLOSED) + STIR + f"run 20\nwrite_restart {tmp_path}/half\nrun 20")
-    unbroken = by_id(lmp, "x", 3), by_id(lmp, "v", 3)
+    run(lmp, scene(**CLOSED) + STIR + "run 40")
+    right = by_id(lmp, "x", 3), by_id(lmp, "v", 3), by_id(lmp, "rmass"), fix_by_id(lmp, "eos")
     lmp.close()
+    assert np.abs(right[3][-60:]).max() == 0 and np.abs(right[3]).max() > 1e-3
     lmp = start()
-    run(lmp, f"atom_modify map array sort 0 0\nread_restart {tmp_path}/half\n" + AGAIN + "run 20")
-    for one, other in zip(unbroken, (by_id(lmp, "x", 3), by_id(lmp, "v", 3))):
-        assert np.abs(one - other).max() < 1e-11
+    run(lmp, scene(**CLOSED) + STIR + runs.format(file=tmp_path / "half"))
+    if "restart" in runs:
+        lmp.close()
+        lmp = start()
+        run(lmp, f"atom_modify map array sort 0 0\nread_restart {tmp_path}/half\n" + AGAIN)
+        run(lmp, "run 40 upto")
+    for one, other in zip(right, (by_id(lmp, "x", 3), by_id(lmp, "v", 3), by_id(lmp, "rmass"), fix_by_id(lmp, "eos"))):
+        off = np.abs(one - other)
+        assert np.minimum(off, np.abs(8 - off)).max() < 1e-13
     lmp.close()
+
+
+@pytest.mark.parametrize("change", ["velocity grains set 0.5 NULL NULL units box", "velocity water set NULL 0.2 NULL units box"])
+def test_a_run_after_velocities_have_changed_finds_the_drag_anew(change):
+    """The force on grains at the beginning is that of a run that begins so."""
+    found = []
+    for before in ("run 5\n", "run 5\nunfix g\nfix g grains sph/grains displace no\n"):
+        lmp = start()
+        run(lmp, scene(**CLOSED) + STIR + before + change + "\nrun 0")
+        found.append(forces_on_grains(lmp)[:, 1:])
+        lmp.close()
+    assert np.abs(found[0] - found[1]).max() < 1e-3 * np.abs(found[0]).max()
 
 
 def test_drag_that_is_stiff_does_not_overshoot():

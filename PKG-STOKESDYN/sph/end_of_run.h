@@ -1,0 +1,32 @@
+/* How a run ended: the step, and the sum of a hash of all velocities of a group. If they are the
+ * same when a run begins, nobody has changed a velocity in between, and what the last step found
+ * with velocities at half step still stands (common/resume.h has rows, which cost 64 bytes an atom;
+ * a sum of hashes has no order, so that 16 bytes in all will do on any number of ranks). */
+#ifndef SD_END_OF_RUN_H
+#define SD_END_OF_RUN_H
+
+#include "restart.h"
+
+#include "pointers.h"
+
+#include <cstdint>
+
+namespace StokesDyn {
+
+class EndOfRun : protected LAMMPS_NS::Pointers {
+ public:
+  explicit EndOfRun(LAMMPS_NS::LAMMPS *lmp) : Pointers(lmp) {}
+
+  /* on all ranks together */
+  void record(int groupbit);
+  bool still_stands(int groupbit) const;
+  void write(NamedState &) const;
+  void read(const NamedState &);
+
+ private:
+  double step = -1.0;
+  uint64_t velocities = 0;
+};
+
+}    // namespace StokesDyn
+#endif
