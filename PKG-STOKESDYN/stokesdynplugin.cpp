@@ -16,6 +16,7 @@
 #include "fix_sph_grains.h"
 #include "fix_sph_settings.h"
 #include "fix_sph_opening.h"
+#include "fix_sph_friction.h"
 #include "fix_sph_shift.h"
 #include "fix_sph_tension.h"
 #include "fix_stokes_dynamics.h"
@@ -110,6 +111,7 @@ static std::vector<PluginStyle> sph_styles()
           fix<FixNveSph>("SPH: time integration"),
           fix<FixPropertyGlobal>("SPH: speed of sound and smoothing length by type"),
           fix<FixSphShift>("internal: memory of the SPH pair style"),
+          fix<FixSphFriction>("internal: implicit friction of the SPH pair style"),
           fix<FixSphEnergy>("internal: memory of compute sph/energy"),
           compute<ComputeSphEnergy>("SPH: kinetic, potential, elastic and dissipated energy"),
           compute<ComputeSphProbe>("SPH: pressure at points, height of the free surface"),

@@ -6,6 +6,7 @@
 #include "sph.h"
 
 #include <algorithm>
+#include <array>
 
 namespace LAMMPS_NS {
 class Region;
@@ -62,7 +63,11 @@ class FixWallAdamiSph : public WallFix {
   void init() override;
 
   /* Of this step and rank: the force of the fluid on the wall particles, from the pair style. */
-  void bears(const double F[3]) { std::copy_n(F, 3, on_wall); }
+  void bears(const std::array<double, 3> &F) { std::copy_n(F.data(), 3, on_wall); }
+  void bears_more(const std::array<double, 3> &F)
+  {
+    for (int d = 0; d < 3; d++) on_wall[d] += F[d];
+  }
 
   /* Per mass, as wall particle i sees it, which changes its place with the velocity v: gravity, with
    * own_acceleration less that of the particle, a mean over the time tau; once a step. */

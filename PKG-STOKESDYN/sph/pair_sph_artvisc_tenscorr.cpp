@@ -1,5 +1,6 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
+#include "fix_sph_friction.h"
 #include "fix_sph_settings.h"
 #include "fix_sph_shift.h"
 #include "fixes.h"
@@ -51,6 +52,7 @@ PairSph::~PairSph()
 {
   if (asked_for_velocities) comm->ghost_velocity = 0;    // as it was
   FixSphShift::take_away(lmp);
+  FixSphFriction::provide(lmp, false);
   if (!allocated) return;
   memory->destroy(setflag);
   memory->destroy(cutsq);
@@ -73,7 +75,7 @@ void PairSph::parse()
 {
   for (double &value : defaults) value = NAN;
   model = sd_sph_model();
-  shifts = pliant = corrects = false;
+  shifts = pliant = corrects = implicit = false;
   law = SD_SPH_NEWTON;
   Keywords in(lmp, voice.command, args);
   if (!in.next()) voice.fail("the kernel is missing: give cubicspline or wendland, then the smoothing length h");
@@ -117,6 +119,7 @@ void PairSph::parse()
          pliant = how == PLIANT;
        }},
       {"correction", [&] { corrects = in.yes_no(); }},
+      {"implicit", [&] { implicit = in.yes_no(); }},
   });
   in.require(shifts || !corrects || !in.given("shift"),
              "correction yes switches shift on: leave shift no out");
@@ -125,6 +128,7 @@ void PairSph::parse()
   shifts = shifts || corrects;
   in.require(law == SD_SPH_NEWTON || model.friction,
              "keyword rheology needs keyword viscosity, whose number is mu of the law");
+  in.require(!implicit || model.friction, "keyword implicit needs keyword viscosity, whose friction it makes implicit");
 }
 
 /* A law of viscosity. What it does not ask for has the value with which it does nothing. */
@@ -194,8 +198,8 @@ void PairSph::coeff(int narg, char **arg)
     if (k == DELTAP && !model.tenscorr && !shifts) in.refuse("the pair_style has no tensCorr");
     if (k == MU && !model.friction) in.refuse("the pair_style has no viscosity");
     if (k > MU && law == SD_SPH_NEWTON) in.refuse("the pair_style has no rheology");
-    if (k >= MU && law != SD_SPH_NEWTON && ihi < jlo)
-      in.refuse("with rheology each particle has the viscosity of its own type, and a pair their harmonic "
+    if (k >= MU && has_own_viscosities() && ihi < jlo)
+      in.refuse("with rheology and with implicit each particle has the viscosity of its own type, and a pair their harmonic "
                 "mean: give it by pair_coeff I I");
     values[k] = may_vanish(k) ? in.not_negative() : in.positive();
   }
@@ -335,9 +339,9 @@ double PairSph::Neighbours::bytes() const
 double PairSph::memory_usage()
 {
   double bytes = near.bytes() + around.bytes() + of_flow.bytes();
-  for (const auto *v : {&x4, &v4, &f4, &sums, &weights, &order, &own, &rubs})
+  for (const auto *v : {&x4, &v4, &f4, &sums, &weights, &order, &own, &rubs, &scratch})
     bytes += v->capacity() * sizeof(double);
-  for (const auto *v : {&P, &masses, &rate, &each, &kick, &wall_rows, &displacing, &viscosities})
+  for (const auto *v : {&P, &masses, &rate, &each, &kick, &wall_rows, &displacing, &viscosities, &inertia})
     bytes += v->capacity() * sizeof(double);
   for (const auto *v : {&classes, &phases})
     bytes += v->capacity() * sizeof(int);

@@ -11,6 +11,7 @@
 #include "sd_sph_rheology.h"
 #include "sph.h"
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,6 +59,13 @@ class PairSph : public LAMMPS_NS::Pair {
    * 'run ... pre no', before which LAMMPS prepares nothing. */
   void require_prepared() const;
 
+  /* At the end of a step, when all forces are known: their friction, that of the estimated velocities,
+   * becomes that of the velocities a time tau later (sd_sph_implicit.h). */
+  void rub_implicitly(double tau);
+  /* rows of four numbers: those of this rank to ghosts; those of ghosts added to the owners' */
+  void share_rows(double *rows) { forward(rows, 4); }
+  void collect_rows(double *rows) { reverse(rows, 4); }
+
   /* For the SPH fixes. Pressures are those of the latest force. */
   double pressure(int i) const { return P[i]; }
   double smoothing_length(int itype) const { return table[H][itype][itype]; }
@@ -65,6 +73,7 @@ class PairSph : public LAMMPS_NS::Pair {
   /* Of particle i, of this rank, in the latest force; with a law of viscosity 0 for walls. */
   double viscosity(int i) const;
   bool is_newtonian() const { return law == SD_SPH_NEWTON; }
+  bool rubs_implicitly() const { return implicit; }
   bool has_laplacian() const { return model.friction == SD_SPH_LAPLACIAN; }
   bool has_sound_speed(int itype) const;
   bool takes(int itype) const { return table[H][itype][itype] > 0.0; }
@@ -119,7 +128,7 @@ class PairSph : public LAMMPS_NS::Pair {
 
   // settings
   std::vector<std::string> args;    // of pair_style, for restart files
-  bool shifts = false, pliant = false, corrects = false;
+  bool shifts = false, pliant = false, corrects = false, implicit = false;
   sd_sph_law law = SD_SPH_NEWTON;
   double defaults[NPARAMETERS];
   // by pair_coeff (NaN: not given), and in use
@@ -129,6 +138,8 @@ class PairSph : public LAMMPS_NS::Pair {
   void read_law(Keywords &in);
   static bool may_vanish(int parameter);
   void check_law(int itype) const;
+  /* Has each particle a viscosity, of its type and perhaps of its shear rate, in place of pairs of types? */
+  bool has_own_viscosities() const { return implicit || law != SD_SPH_NEWTON; }
   sd_sph_rheology rheology(int itype) const;
   void allocate();
   double spacing(int itype) const;
@@ -192,8 +203,9 @@ class PairSph : public LAMMPS_NS::Pair {
   sd_sph_particles particles = {};
   std::vector<sd_sph_coefficients> coefficients;
   MovedBox moved_box;
-  Rows x4, v4, f4, sums, weights, spins, order, own, rubs;
-  std::vector<double> P, masses, rate, each, kick, wall_rows, displacing, viscosities;
+  Rows x4, v4, f4, sums, weights, spins, order, own, rubs, scratch;
+  std::vector<double> P, masses, rate, each, kick, wall_rows, displacing, viscosities, inertia;
+  int friction_steps = 0;    // of the last implicit friction
   std::vector<int> classes, phases;
   bool used(int itype) const;
   void look_at_densities(int n);
@@ -224,11 +236,12 @@ class PairSph : public LAMMPS_NS::Pair {
   void held_row(int i, const double *sums_i, double *row);
   [[noreturn]] void no_density(const Voice &of, int i, const std::string &asked) const;
   bool is_wall(int i) const;
-  void load_wall(int receivers);
+  std::array<double, 3> load_of(const Rows &F, int receivers) const;
   bool has_walls() const { return wall || has_ends(); }
   const FixSphPressure *state_of(int i) const;
   double background() const;
   void pressures_of_all();
+  std::vector<double> shear_rates();
   void find_viscosities();
   void look_at_friction();
   void forces(bool rates);

@@ -165,25 +165,6 @@ void PairSph::look_at_fluids()
              "sph/density/continuity");
 }
 
-/* Friction is explicit: where a fluid is at rest it has mumax, and the time step must bear that, though fix
- * check/timestep/sph sees the viscosities of the moment. */
-void PairSph::look_at_friction()
-{
-  double mine = HUGE_VAL;
-  for (int i = 0; i < atom->nlocal; i++) {
-    const int t = atom->type[i];
-    if (!used(t) || is_wall(i) || !(atom->rho[i] > 0.0)) continue;
-    const sd_sph_rheology fluid = rheology(t);
-    const double h = table[H][t][t], most = sd_sph_largest_mu(&fluid);
-    mine = std::min(mine, h * h * atom->rho[i] / (8.0 * most));
-  }
-  const double limit = smallest_of_all(world, mine);
-  if (update->dt <= limit) return;
-  voice.warn("keyword rheology: the time step " + text(update->dt) + " is longer than h^2 rho/(8 mumax) = " +
-             text(limit) + ": friction is unstable where the fluid is nearly at rest; use a smaller mumax "
-             "(rho c h/3 costs no time step) or a smaller time step");
-}
-
 /* Wall particles stand for fluid: they push with its mass. */
 void PairSph::look_at_walls()
 {

@@ -2,6 +2,7 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix_nve_sph.h"
+#include "fix_sph_friction.h"
 #include "fix_sph_grains.h"
 #include "fix_sph_settings.h"
 #include "compute_sph_energy.h"
@@ -180,6 +181,11 @@ void PairSph::choose_scheme()
                                   "volume of a particle: use shift yes"
                                 : "does not go with fix sph/density/corr, which would smear water into the grains: "
                                   "use delta of fix sph/density/continuity");
+  if (implicit && (integrators.empty() || !fixes_of(lmp, "sph").empty()))
+    voice.fail("keyword implicit needs fix nve/sph, whose step it knows");
+  if (implicit && grains)
+    grains->voice.fail("does not go with keyword implicit of pair_style sph/artVisc/tensCorr");
+  FixSphFriction::provide(lmp, implicit);
   state = FixSphShift::provide(lmp, shifts, corrects || pliant);
   shared = sd_sph_level_of(&model) == SD_SPH_RATE;
 }

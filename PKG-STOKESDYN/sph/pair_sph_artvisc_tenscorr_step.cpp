@@ -5,6 +5,7 @@
 #include "fix_sph_grains.h"
 #include "fix_sph_settings.h"
 #include "fix_sph_shift.h"
+#include "fix_wall_sph.h"
 #include "keywords.h"
 #include "sd_sph_density.h"
 #include "sd_sph_order.h"
@@ -47,7 +48,7 @@ void PairSph::compute(int eflag, int vflag)
     look_at_fluids();
     if (wall) look_at_walls();
     if (wall) tell_of_belts();
-    if (law != SD_SPH_NEWTON) look_at_friction();
+    if (law != SD_SPH_NEWTON && !implicit) look_at_friction();
   }
   if (needs_velocity) estimate_velocities();
   if (leapfrog && update->setupflag && has_walls()) settle_walls();
@@ -123,14 +124,14 @@ void PairSph::prepare()
   model.pair = coefficients.data();
   raw = {list->inum, NEIGHMASK, list->ilist, list->numneigh, list->firstneigh};
   pairs = raw;
-  if (!has_walls() && !state && !sd_sph_of_fluids(&model)) return;
+  if (!has_walls() && !state && !sd_sph_of_fluids(&model) && !implicit) return;
   phases.assign(n + 1, 0);
   for (int i = 0; i < n; i++) {
     if (sd_sph_of_fluids(&model))
       for (size_t k = 0; k < pressures.size(); k++)
         if (atom->mask[i] & pressures[k]->groupbit) phases[i] = (int) k;
     const bool still = is_wall(i) ||
-        (state && !(atom->mask[i] & own_vest_bits)) || is_held(i);
+        ((state || implicit) && !(atom->mask[i] & own_vest_bits)) || is_held(i);
     if (still) phases[i] = ~phases[i];
   }
   particles.phase = phases.data();
@@ -150,7 +151,7 @@ bool PairSph::types_are_alike()
       if (!(table[H][i][j] > 0.0)) continue;    // two types of another style
       const sd_sph_parameters given_values = {table[H][i][j], table[C][i][j], table[ALPHA][i][j],
                                               table[BETA][i][j], table[DELTAP][i][j],
-                                              law == SD_SPH_NEWTON ? table[MU][i][j] : 1.0};
+                                              has_own_viscosities() ? 1.0 : table[MU][i][j]};
       sd_sph_coefficients &c = coefficients[(size_t) (i - 1) * ntypes + j - 1];
       c = sd_sph_coefficients_of(&model, &given_values);
       if (c.support * c.support > cutsq[i][j] * (1.0 + 1e-12))
@@ -362,35 +363,13 @@ void PairSph::pressures_of_all()
   sd_sph_pack_pressures(&model, n, P.data(), background(), rho, x4.data());
 }
 
-/* The viscosity of each particle from its shear rate, in walls as well: with the velocity that friction sees
- * there, the rate is about that at the face of the wall, while the first row of fluid is half a spacing
- * away. x4 and v4 are packed. */
-void PairSph::find_viscosities()
-{
-  const int n = particles.n;
-  sums.assign(SD_SPH_GRADIENTS * (size_t) (n + 1), 0.0);
-  sd_sph_velocity_gradients(&model, &pairs, &particles, sums.data());
-  reverse(sums.data(), SD_SPH_GRADIENTS);
-  std::vector<sd_sph_rheology> fluids(1);
-  for (int type = 1; type <= atom->ntypes; type++) fluids.push_back(rheology(type));
-  viscosities.assign(n + 1, 0.0);
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!used(atom->type[i])) continue;
-    const double G = sd_sph_shear_rate(model.dimension, &sums[SD_SPH_GRADIENTS * (size_t) i]);
-    viscosities[i] = sd_sph_mu(&fluids[atom->type[i]], G);
-  }
-  forward(viscosities.data(), 1);
-  viscosities[n] = 1.0;
-  particles.mu = viscosities.data();
-}
-
 void PairSph::forces(bool rates)
 {
   const int n = particles.n, receivers = shared && force->newton_pair ? n : atom->nlocal;
   const bool pairwise = evflag && vflag_either;
   if (model.artvisc || model.friction || rates || model.scheme != SD_SPH_PLAIN)
     sd_sph_pack_v(n, rows(atom->vest), atom->rho, v4.data());
-  if (law != SD_SPH_NEWTON) find_viscosities();
+  if (has_own_viscosities()) find_viscosities();
   std::fill(f4.begin(), f4.end(), 0.0);
   if (pairwise) {
     const int *count = corrects ? near.count.data() : pairs.count;
@@ -405,7 +384,7 @@ void PairSph::forces(bool rates)
   if (corrects) add_kicks(f4);
   for (int i = 0; i < receivers; i++)
     for (int d = 0; d < 3; d++) atom->f[i][d] += f4[4 * (size_t) i + d];
-  if (wall) load_wall(receivers);
+  if (wall) wall->bears(load_of(f4, receivers));
   if (rates)
     for (int i = 0; i < receivers; i++)
       if (atom->mask[i] & continuity->groupbit) atom->drho[i] += f4[4 * (size_t) i + 3];

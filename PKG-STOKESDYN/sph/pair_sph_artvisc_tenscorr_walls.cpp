@@ -20,16 +20,16 @@ bool PairSph::is_wall(int i) const
   return wall && (atom->mask[i] & wall->groupbit);
 }
 
-/* Of this style alone: atom->f has what other styles and fixes do as well. What ghosts got is added on
- * the rank that computed it. */
-void PairSph::load_wall(int receivers)
+/* The load on walls by this style alone: atom->f has what other styles and fixes do as well. What ghosts got
+ * is added on the rank that computed it. */
+std::array<double, 3> PairSph::load_of(const Rows &F, int receivers) const
 {
-  double F[3] = {0.0, 0.0, 0.0};
+  std::array<double, 3> sum = {0.0, 0.0, 0.0};
   for (int i = 0; i < receivers; i++) {
     if (!is_wall(i)) continue;
-    for (int d = 0; d < 3; d++) F[d] += f4[4 * (size_t) i + d];
+    for (int d = 0; d < 3; d++) sum[d] += F[4 * (size_t) i + d];
   }
-  wall->bears(F);
+  return sum;
 }
 
 template <class Style> static Style *holder(const std::vector<Style *> &fixes, const Atom *atom, int i)

@@ -8,7 +8,8 @@ OPTIONS = {
     "dim": [2, 2, 3], "wide": [1, 1, 1, 2], "space": ["full", "drop", "tank", "tank", "column", "channel", "ends", "body"],
     "scheme": ["plain", "delta", "shift", "shift", "pliant", "correction", "summation"], "volume": ["no", "no", "yes"], "fluids": [1, 1, 2],
     "kernel": ["wendland", "cubicspline"], "artVisc": ["no", "yes"], "tensCorr": ["no", "no", "yes"],
-    "viscosity": ["no", "central", "laplacian"], "rheology": ["no", "no", "bingham", "carreau"], "filter": ["no", "no", "yes"],
+    "viscosity": ["no", "central", "laplacian"], "rheology": ["no", "no", "bingham", "carreau"],
+    "implicit": ["no", "no", "yes"], "filter": ["no", "no", "yes"],
     "state": ["Tait", "Tait", "tension no", "relativ", "absolut"],
     "wall": ["at rest", "slip", "suction no", "moving", "own"], "plane": ["no", "no", "plane", "region"], "gravity": ["no", "yes"],
     "grains": ["no", "no", "yes"], "tension": ["no", "no", "yes"],
@@ -44,11 +45,11 @@ def lawful(o, no):
     no(o["space"] in ("full", "drop", "ends", "channel", "body"), plane="no")
     no(o["viscosity"] == "laplacian" and o["wall"] in ("moving", "own"), viscosity="central")
     no(o["look"] == "height" and (o["space"] not in ("tank", "column") or o["gravity"] == "no"), look="probe")
-    no(o["viscosity"] == "no", rheology="no")
+    no(o["viscosity"] == "no", rheology="no", implicit="no")
     no(o["space"] == "body", gravity="yes")
     # grains smaller than h
     no(o["grains"] == "yes", dim=3, scheme="delta" if o["scheme"] in ("plain", "correction", "summation") else o["scheme"], volume="yes", fluids=1,
-       rheology="no", plane="no", look="nothing", wall="at rest", space="full" if o["space"] == "full" else "tank",
+       rheology="no", implicit="no", plane="no", look="nothing", wall="at rest", space="full" if o["space"] == "full" else "tank",
        viscosity="laplacian" if o["viscosity"] == "laplacian" else "central")
     no(o["space"] == "body" and o["look"] == "virial", look="energy")     # that of fix rigid depends on where the origin is
 
@@ -153,6 +154,7 @@ def commands(s, o, d, up, lo, hi, each):
     words += f" viscosity <eta{d} 0.05> {o['viscosity']}" * (o["viscosity"] != "no")
     words += {"bingham": f" rheology bingham <P{d} 0.02> <eta{d} 0.5>",
               "carreau": f" rheology carreau <t 2.0> 0.4 <eta{d} 0.5>"}.get(o["rheology"], "")
+    words += " implicit yes" * (o["implicit"] == "yes")
     words += {"shift": " shift yes", "pliant": " shift pliant", "correction": " correction yes"}.get(o["scheme"], "")
     coefficients = "c <V 10>" + " deltap <L 1.0>" * shifts
     s.pair = [("sph/artVisc/tensCorr", words, coefficients)]
@@ -206,7 +208,8 @@ def commands(s, o, d, up, lo, hi, each):
         s.globals += [("F", "f_pull[1] f_pull[2] f_pull[3]"), ("1", "f_pull[4]"), ("L" if flat else "area", "f_pull[5]")]
     s.columns += [("1", "f_couple[1]"), ("F", "f_couple[2] f_couple[3] f_couple[4]")] * grains
     s.globals += [("F", "f_couple[1] f_couple[2] f_couple[3]"), ("1", "f_couple[4]")] * grains
-    s.dt, s.steps, s.tolerance = 0.01, o["steps"], 1e-8
+    # implicit friction is left at a residual of 1e-8
+    s.dt, s.steps, s.tolerance = 0.01, o["steps"], 1e-6 if o["implicit"] == "yes" else 1e-8
 
 
 def look(s, o, d, up):

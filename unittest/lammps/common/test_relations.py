@@ -111,7 +111,7 @@ def test_lives_of_all_models_end_well(tmp_path):
 
 @pytest.mark.parametrize("frame, ours", [("#3 0x7f in PairSph::compute (/home/u/build/stokesdynstyles.so+0x12)", True),
                                          ("#1 0x7f in lammpsplugin_init (/home/u/build/stokesdynplugin.so+0x12)", True),
-                                         ("#0 0x7f in sd_cg ../PKG-STOKESDYN/core/stokes/krylov/sd_cg.c:31", True),
+                                         ("#0 0x7f in sd_cg ../PKG-STOKESDYN/core/base/sd_cg.c:31", True),
                                          ("#0 0x7f in LAMMPS_NS::Thermo::compute (/usr/lib/liblammps.so.0+0x34)", False)])
 def test_a_report_is_ours_where_a_frame_is(tmp_path, frame, ours):
     (tmp_path / "asan.12").write_text(f"==12==ERROR: AddressSanitizer: heap-use-after-free\n    #0 0x7e in memcpy\n    {frame}\n")

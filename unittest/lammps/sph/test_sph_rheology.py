@@ -73,16 +73,16 @@ CHANNEL = """
     """
 
 
-def channel(name, across, T, form="laplacian"):
+def channel(name, across, T, form="laplacian", dt=0.0, more=""):
     """A channel, from the parabola of a Newtonian fluid on: its root mean square error in units of the speed of the centre, and that of the
-    discharge; at the start, and at the end."""
+    discharge; at the start, and at the end. `more`: words for the pair style."""
     dx, g, layers = 1.0 / across, driven(name), 3
     h = 1.3 * dx
-    dt = min(0.3 * h / 10, 0.9 * h * h / (8 * LAWS[name][3]))
+    dt = dt or min(0.3 * h / 10, 0.9 * h * h / (8 * LAWS[name][3]))
     lmp = start()
     try:
         run(lmp, CHANNEL.format(dx=dx, half=dx / 2, length=8 * dx, bottom=-0.5 - (layers + 1) * dx, top=0.5 + (layers + 1) * dx, floor=-0.5 - layers * dx,
-                                roof=0.5 + layers * dx, mass=dx * dx, tenth=0.1 * dx, skin=0.3 * dx, h=h, viscosity=words(name).format(form),
+                                roof=0.5 + layers * dx, mass=dx * dx, tenth=0.1 * dx, skin=0.3 * dx, h=h, viscosity=words(name).format(form) + more,
                                 force=g * dx * dx, dt=dt))
         errors = []
         for steps in (0, int(T / dt)):
@@ -104,6 +104,45 @@ def test_a_channel_forgets_its_parabola_and_finds_the_closed_form(name, T):
     assert min(coarse[0][0], fine[0][0]) > 0.06
     assert fine[1][0] < 0.01 and abs(fine[1][1]) < 0.011
     assert fine[1][0] < 0.75 * coarse[1][0] < 0.012
+
+
+@pytest.fixture
+def stiff(monkeypatch):
+    """Bingham's fluid, whose plug fills half of the channel, with a mumax of 160 times mu; the longest explicit time step, 10 across"""
+    monkeypatch.setitem(LAWS, "bingham", (0.1, 1.0, 1.0, 16.0))
+    return 0.13**2 / (8 * 16)
+
+
+def test_implicit_friction_bears_twenty_times_the_explicit_step(stiff):
+    """As explicit friction in 22 times as many steps (0.0570, -0.0200), which boils at such a step: the plug is fluid there."""
+    implicit = channel("bingham", 10, 2.0, dt=20 * stiff, more=" implicit yes")[1]
+    assert implicit[0] == pytest.approx(0.0570, abs=1e-3) and implicit[1] == pytest.approx(-0.0200, abs=1e-3)
+    assert channel("bingham", 10, 2.0, dt=20 * stiff)[1][0] > 0.08
+
+
+def test_implicit_friction_is_of_first_order_and_meets_the_explicit_one(stiff):
+    """From the same start for the same time: half the step, half the difference; 1e-6 of the centre's speed in small steps."""
+    apart = []
+    for part in (0.2, 0.1):
+        both = [channel("bingham", 10, 40 * stiff, dt=part * stiff, more=more)[1] for more in ("", " implicit yes")]
+        apart.append(abs(both[0][1] - both[1][1]))
+    assert apart[1] == pytest.approx(0.5 * apart[0], rel=0.15) and apart[1] < 1e-4, apart
+
+
+def test_a_wall_bears_what_drives_the_channel_with_implicit_friction():
+    """Newton's fluid in steps of 30 times the explicit limit, in which explicit friction does not last: momentum leaves by the walls alone."""
+    dx, h, g = 0.1, 0.13, 8.0 * 16
+    text = CHANNEL.format(dx=dx, half=dx / 2, length=8 * dx, bottom=-0.9, top=0.9, floor=-0.8, roof=0.8, mass=dx * dx, tenth=0.1 * dx, skin=0.03,
+                          h=h, viscosity="viscosity 16 {}", force=g * dx * dx, dt=0.3 * h / 10)
+    lmp = start()
+    try:
+        run(lmp, text.format("implicit yes") + "run 200")
+        u = by_id(lmp, "v", 3)[by_id(lmp, "type") == 1, 0]
+        assert lmp.extract_fix("wall", 0, 1, 0) == pytest.approx(g * 0.8, rel=1e-3)
+        assert u.mean() == pytest.approx(2.0 / 3.0, rel=0.03)
+    finally:
+        lmp.close()
+    assert message(text.format("") + "run 200")
 
 
 def test_a_type_may_have_its_own_law():
@@ -146,16 +185,19 @@ DUMP = "\nwrite_dump all custom end.dump id x y vx vy fx fy modify format float 
 
 
 @pytest.mark.ranks(3)
-def test_ranks_newton_and_a_restart_change_nothing(tmp_path):
+@pytest.mark.parametrize("friction, close", [("explicit", 1e-9), ("implicit", 1e-7)])
+def test_ranks_newton_and_a_restart_change_nothing(friction, close, tmp_path):
+    """Of implicit friction the solve is left at 1e-8."""
+    scene = SCENE if friction == "explicit" else SCENE.replace("correction yes", "correction yes implicit yes").replace("0.7 0.8", "0.7 8")
     again = """
     atom_modify map array
     read_restart half
     neighbor 0.03 bin
     neigh_modify delay 0 every 1 exclude type 2 2
-    """ + SCENE[SCENE.index("    fix eos"):]
+    """ + scene[scene.index("    fix eos"):]
     ends = []
-    for name, ranks, text in (("one", 1, SCENE + "run 100"), ("three", 3, SCENE + "run 100"), ("newton off", 2, "newton off\n" + SCENE + "run 100"),
-                              ("restart", 1, SCENE + "run 50\nwrite_restart half\nclear\nplugin load stokesdynplugin.so\n" + again + "run 50")):
+    for name, ranks, text in (("one", 1, scene + "run 100"), ("three", 3, scene + "run 100"), ("newton off", 2, "newton off\n" + scene + "run 100"),
+                              ("restart", 1, scene + "run 50\nwrite_restart half\nclear\nplugin load stokesdynplugin.so\n" + again + "run 50")):
         folder = tmp_path / name
         folder.mkdir()
         done = mpirun(ranks, text + DUMP, folder)
@@ -169,7 +211,7 @@ def test_ranks_newton_and_a_restart_change_nothing(tmp_path):
     for k, end in enumerate(ends[1:]):
         for names in (("vx", "vy"), ("fx", "fy")):
             scale = max(np.abs(ends[0][n]).max() for n in names)
-            assert max(np.abs(end[n] - ends[0][n]).max() for n in names) < 1e-9 * scale, (k, names)
+            assert max(np.abs(end[n] - ends[0][n]).max() for n in names) < close * scale, (k, names)
 
 
 STYLE = "pair_style sph/artVisc/tensCorr wendland 0.012 viscosity 1 "
@@ -183,8 +225,11 @@ REFUSED = {
     "coeff without": (PAIR + "pair_coeff 1 1 tau 3", "keyword tau: the pair_style has no rheology"),
     "coeff tau": (WITH + "pair_coeff 1 1 tau -3", "keyword tau: '-3' must be >= 0"),
     "coeff n": (WITH + "pair_coeff 1 1 n 0", "keyword n: '0' must be > 0"),
-    "coeff pair": (WITH + "pair_coeff 1 2 mu 3", "keyword mu: with rheology each particle has the viscosity of its own type"),
+    "coeff pair": (WITH + "pair_coeff 1 2 mu 3", "keyword mu: with rheology and with implicit each particle"),
     "mumax below mu": (WITH + "pair_coeff * * mumax 0.5\n" + MOVE + "run 0", "type 1: mumax = 0.5 must not be smaller than mu = 1"),
+    "implicit": (STYLE.replace("viscosity 1 ", "") + "implicit yes", "keyword implicit needs keyword viscosity"),
+    "implicit pair": (PAIR.replace("\n", " viscosity 1 implicit yes\n", 1) + "pair_coeff 1 2 mu 3", "keyword mu: with rheology and with implicit"),
+    "implicit fix sph": (PAIR.replace("\n", " viscosity 1 implicit yes\n", 1) + MOVE.replace("nve/sph", "sph") + "run 0", "keyword implicit needs fix nve/sph"),
     "carreau n": (PAIR.replace("\n", " viscosity 1 rheology carreau 0.1 1.5 30\n", 1) + MOVE + "run 0", "n = 1.5 must be at most 1 with carreau"),
 }
 

@@ -1,5 +1,6 @@
 /* Conjugate gradients, preconditioned: the one loop under forces from velocities (sd_solve.h),
- * velocities from forces (sd_bodies.h) and the films within these (sd_tie.h).
+ * velocities from forces (sd_bodies.h), the films within these (sd_tie.h) and implicit friction of SPH
+ * (sd_sph_implicit.h).
  *
  * A symmetric and positive definite on the space that the directions span, from x and r = b - A x:
  *
