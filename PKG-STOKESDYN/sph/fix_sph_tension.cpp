@@ -382,7 +382,7 @@ double FixSphTension::memory_usage()
   double bytes = SphFix::memory_usage();
   for (const auto *rows : {&x4, &v4, &at_surface, &contact, &whole, &at_wall, &sums, &beside, &turns})
     bytes += (double) rows->capacity() * sizeof(double);
-  return bytes;
+  return bytes + (double) skin.capacity() * (sizeof(int) + sizeof(double));    // and its weights
 }
 
 // --- communication -------------------------------------------------------------------------------
