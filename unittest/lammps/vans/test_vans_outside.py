@@ -206,9 +206,9 @@ create_atoms 1 single 0.01 0.01 0.02
 create_atoms 2 single 0.01 0.01 0.0180000001
 set group all diameter 0.002 density 2650
 group loose type 2
-variable gamma equal ${bond}*(2650-1000)*9.81*PI/6*0.002^3/(4*PI*0.001/2)
+variable gamma equal ${bond}*(2650-1000)*9.81*PI/6*0.002^3/(${pull}*PI*0.001/2)
 pair_style granular
-pair_coeff * * dmt 2e6 0.3 0.3 ${gamma} tangential linear_history 400 1 0.4
+pair_coeff * * ${law} 2e6 0.3 0.3 ${gamma} tangential linear_history 400 1 0.4
 neighbor 0.0005 bin
 timestep 2e-5
 fix weight loose gravity 9.81 vector 0 0 -1
@@ -219,9 +219,10 @@ print "height $(z[2])"
 """
 
 
-@pytest.mark.parametrize("bond, hangs", [(0.99, False), (1.01, True)])
-def test_a_grain_hangs_where_adhesion_bears_its_weight_in_water(tmp_path, bond, hangs):
-    """DMT: 4 pi gamma a/2 beside (rho_s - rho) g V, the buoyancy being that of the fix."""
-    done = run_lmp(tmp_path, STICK, variables=[("bond", bond)])
+@pytest.mark.parametrize("law, pull, bond, hangs", [("dmt", 4, 0.99, False), ("dmt", 4, 1.01, True), ("jkr", 3, 0.99, False), ("jkr", 3, 1.2, True)])
+def test_a_grain_hangs_where_adhesion_bears_its_weight_in_water(tmp_path, law, pull, bond, hangs):
+    """The largest force of the law, 4 or 3 pi gamma a/2, beside (rho_s - rho) g V, the buoyancy being that of the fix. A grain that just touches has 8/9 of
+    it by jkr, so that it hangs at once where that is enough."""
+    done = run_lmp(tmp_path, STICK, variables=[("bond", bond), ("law", law), ("pull", pull)])
     height = float(done.stdout.split("\nheight ")[1].split()[0])
     assert (abs(height - 0.018) < 1e-6) == hangs and (height < 0.01) != hangs
