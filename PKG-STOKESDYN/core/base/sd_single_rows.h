@@ -1,10 +1,12 @@
-/* Rows of four floats in vectors, each a quarter of 128 bits: of sd_lanes.h where it has floats. */
+/* Rows of four floats in vectors, each a part of 128 bits: of sd_lanes.h where it has floats. */
 #ifndef SD_SINGLE_ROWS_H
 #define SD_SINGLE_ROWS_H
 
-/* Rows side by side, the rows of a vector, and in each quarter four rows of four that become four
- * columns: eight shuffles, two levels of pairs. */
+/* Rows side by side, the rows of a vector, and in each part four rows of four that become four columns:
+ * eight shuffles, two levels of pairs. WIDE: the instruction of a whole vector. */
 #if LANES == 16
+#define WIDE(op) PACKED(512, op)
+
 INLINE vec four_beside(row4 a, row4 b, row4 c, row4 d)
 {
   const __m256 low = _mm256_insertf128_ps(_mm256_castps128_ps256(a), b, 1);
@@ -19,17 +21,9 @@ INLINE row4 part(vec a, int k)
       : k == 2  ? _mm512_extractf32x4_ps(a, 2)
                 : _mm512_extractf32x4_ps(a, 3);
 }
-
-INLINE void transpose(vec r[4])
-{
-  const vec a = _mm512_unpacklo_ps(r[0], r[1]), b = _mm512_unpackhi_ps(r[0], r[1]);
-  const vec c = _mm512_unpacklo_ps(r[2], r[3]), d = _mm512_unpackhi_ps(r[2], r[3]);
-  r[0] = _mm512_shuffle_ps(a, c, 0x44);
-  r[1] = _mm512_shuffle_ps(a, c, 0xee);
-  r[2] = _mm512_shuffle_ps(b, d, 0x44);
-  r[3] = _mm512_shuffle_ps(b, d, 0xee);
-}
 #elif LANES == 8
+#define WIDE(op) PACKED(256, op)
+
 INLINE vec beside(row4 a, row4 b)
 {
   return _mm256_insertf128_ps(_mm256_castps128_ps256(a), b, 1);
@@ -39,32 +33,31 @@ INLINE row4 part(vec a, int k)
 {
   return k ? _mm256_extractf128_ps(a, 1) : _mm256_castps256_ps128(a);
 }
-
-INLINE void transpose(vec r[4])
-{
-  const vec a = _mm256_unpacklo_ps(r[0], r[1]), b = _mm256_unpackhi_ps(r[0], r[1]);
-  const vec c = _mm256_unpacklo_ps(r[2], r[3]), d = _mm256_unpackhi_ps(r[2], r[3]);
-  r[0] = _mm256_shuffle_ps(a, c, 0x44);
-  r[1] = _mm256_shuffle_ps(a, c, 0xee);
-  r[2] = _mm256_shuffle_ps(b, d, 0x44);
-  r[3] = _mm256_shuffle_ps(b, d, 0xee);
-}
 #else
 INLINE row4 part(vec a, int k)
 {
   (void) k;
   return a;
 }
+#endif
 
 INLINE void transpose(vec r[4])
 {
+#ifdef WIDE
+  const vec a = WIDE(unpacklo)(r[0], r[1]), b = WIDE(unpackhi)(r[0], r[1]);
+  const vec c = WIDE(unpacklo)(r[2], r[3]), d = WIDE(unpackhi)(r[2], r[3]);
+  r[0] = WIDE(shuffle)(a, c, 0x44);
+  r[1] = WIDE(shuffle)(a, c, 0xee);
+  r[2] = WIDE(shuffle)(b, d, 0x44);
+  r[3] = WIDE(shuffle)(b, d, 0xee);
+#else
   const vec a = SHUFFLE(r[0], r[1], 0, 4, 1, 5), b = SHUFFLE(r[0], r[1], 2, 6, 3, 7);
   const vec c = SHUFFLE(r[2], r[3], 0, 4, 1, 5), d = SHUFFLE(r[2], r[3], 2, 6, 3, 7);
   r[0] = SHUFFLE(a, c, 0, 1, 4, 5);
   r[1] = SHUFFLE(a, c, 2, 3, 6, 7);
   r[2] = SHUFFLE(b, d, 0, 1, 4, 5);
   r[3] = SHUFFLE(b, d, 2, 3, 6, 7);
-}
 #endif
+}
 
 #endif

@@ -9,7 +9,6 @@
 #include "sd_ewald_pairs.h"
 #include "sd_ewald_waves.h"
 #include "sd_rank_spheres.h"
-#include "sd_real.h"
 
 typedef struct {
   /* what the tables are made for */
@@ -109,59 +108,23 @@ static sd_status me_place(void *state, const sd_mobility_scene *s)
 
 /* --- product --- */
 
-/* Sums [9] over all spheres of w F, b w F and w T: what is far is felt as a mean. */
-static sd_status ewald_sums_of(const ewald *e, const double *F, double *sums)
-{
-  const sd_rank_spheres *here = &e->here;
-  const long m = e->width;
-  memset(sums, 0, 9 * sizeof(double));
-  for (int i = 0; i < here->own; i++) {
-    const long j = here->sphere[i];
-    const double w = here->spheres.w[j], b = sd_ewald_b(&e->ewald, here->spheres.a[j]);
-    for (int d = 0; d < 3; d++) {
-      sums[d] += w * F[m * j + d];
-      sums[3 + d] += w * b * F[m * j + d];
-      if (m == 6) sums[6 + d] += w * F[m * j + 3 + d];
-    }
-  }
-  return sd_world_sum(&e->world, sums, 9);
-}
-
-/* u += w (mean of what is beyond the range), of one sphere */
-static void add_mean(const ewald *e, long j, double over_V, const double *S, double *u)
-{
-  const long m = e->width;
-  const double w = e->here.spheres.w[j], b = sd_ewald_b(&e->ewald, e->here.spheres.a[j]), *C = e->tail;
-  for (int d = 0; d < 3; d++)
-    u[m * j + d] += w * over_V * ((C[0] - b * C[1]) * S[d] - (C[1] - b * C[2]) * S[3 + d]);
-  for (int d = 3; d < m; d++) u[m * j + d] += w * 0.25 * C[1] * over_V * S[3 + d];
-}
-
-/* u += w (waves, and the mean of what is beyond the range of a periodic box); rows NULL: no waves */
-static void add_far(const ewald *e, const void *rows, const double *sums, double *u)
-{
-  const sd_rank_spheres *here = &e->here;
-  const long m = e->width;
-  const double over_V = 1.0 / sd_ewald_volume(&e->ewald.box);
-  const size_t bytes = e->waves.kernels->bytes;
-  for (int i = 0; i < here->own; i++) {
-    const long j = here->sphere[i];
-    for (int d = 0; d < m && rows; d++) u[m * j + d] += here->spheres.w[j] * sd_number(rows, bytes, m * i + d);
-    if (e->ewald.box.periodic) add_mean(e, j, over_V, sums, u);
-  }
-}
-
-/* u = what is near; and the sums for what is far, of a periodic box. There are spheres. */
-static sd_status me_near_part(ewald *e, const double *F, double *u, double *sums)
+/* What is near, and the sums over all spheres for what is far. There are spheres. */
+static sd_status me_near_part(ewald *e, const double *F, double *sums)
 {
   sd_rank_spheres *here = &e->here;
-  sd_status status = e->ewald.box.periodic ? ewald_sums_of(e, F, sums) : SD_OK;
-  if (status == SD_OK) status = sd_rank_spheres_refresh(here, &e->world, F);
+  const sd_status status = sd_rank_spheres_refresh(here, &e->world, F);
   if (status != SD_OK) return status;
-  sd_ewald_pairs_apply(&e->pairs, here->n, F, here->ghosts, u);
+  sd_ewald_pairs_apply(&e->pairs, here->n, F, here->ghosts, sums);
+  return e->ewald.box.periodic ? sd_world_sum(&e->world, sums, 9) : SD_OK;
+}
+
+/* u = all of it; rows of what waves do, NULL: without them */
+static void me_take(ewald *e, const double *F, const void *rows, const double *sums, double *u)
+{
+  const sd_rank_spheres *here = &e->here;
+  sd_ewald_pairs_take(&e->pairs, here->n, F, rows, e->tail, e->ewald.box.periodic ? sums : NULL, u);
   if (e->ewald.images.wall.sign)
     sd_ewald_image_pairs_apply(&e->image_pairs, here->n, F, here->ghosts, u);
-  return SD_OK;
 }
 
 static void clear(const ewald *e, double *u)
@@ -177,11 +140,11 @@ static sd_status me_apply(void *state, const double *F, double *u)
     clear(e, u);
     return SD_OK;
   }
-  sd_status status = me_near_part(e, F, u, sums);
+  sd_status status = me_near_part(e, F, sums);
   if (status != SD_OK) return status;
   void *rows = sd_ewald_pairs_rows(&e->pairs);
   status = sd_ewald_waves_apply(&e->waves, rows);
-  if (status == SD_OK) add_far(e, rows, sums, u);
+  if (status == SD_OK) me_take(e, F, rows, sums, u);
   return status;
 }
 
@@ -198,15 +161,15 @@ static sd_status apply_rest(void *state, const double *F, double *u)
 {
   ewald *e = state;
   double sums[9];
-  const sd_status status = me_near_part(e, F, u, sums);
-  if (status == SD_OK) add_far(e, NULL, sums, u);
+  const sd_status status = me_near_part(e, F, sums);
+  if (status == SD_OK) me_take(e, F, NULL, sums, u);
   return status;
 }
 
 static sd_status draw(void *state, const sd_random_key *key, double *u)
 {
   ewald *e = state;
-  void *rows = e->pairs.u; /* free between two products */
+  void *rows = e->pairs.waves; /* free between two products */
   clear(e, u);
   const sd_status status = sd_ewald_waves_draw(&e->waves, key, rows);
   if (status == SD_OK) sd_ewald_waves_add(&e->waves, &e->here.spheres, rows, u);

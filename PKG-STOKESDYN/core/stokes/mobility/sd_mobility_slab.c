@@ -164,7 +164,7 @@ static sd_status slab_apply(void *state, const double *F, double *u)
 {
   slab *s = state;
   sd_rank_spheres *here = &s->here;
-  double sums[6];
+  double sums[6], unused[9];
   if (!(s->slab.ewald.count > 0.0)) {
     memset(u, 0, 3 * sizeof(double) * (size_t) s->here.n);
     return SD_OK;
@@ -172,13 +172,13 @@ static sd_status slab_apply(void *state, const double *F, double *u)
   sd_status status = slab_sums_of(s, F, sums);
   if (status == SD_OK) status = sd_rank_spheres_refresh(here, &s->world, F);
   if (status != SD_OK) return status;
-  sd_ewald_pairs_apply(&s->pairs, here->n, F, here->ghosts, u);
-  for (int w = 0; w < sd_slab_many_walls(&s->slab.walls); w++)
-    sd_ewald_image_pairs_apply(s->images + w, here->n, F, here->ghosts, u);
+  sd_ewald_pairs_apply(&s->pairs, here->n, F, here->ghosts, unused);
   void *rows = sd_ewald_pairs_rows(&s->pairs);
   status = sd_ewald_waves_apply(&s->waves, rows);
   if (status != SD_OK) return status;
-  sd_ewald_waves_add(&s->waves, &here->spheres, rows, u);
+  sd_ewald_pairs_take(&s->pairs, here->n, F, rows, NULL, NULL, u);
+  for (int w = 0; w < sd_slab_many_walls(&s->slab.walls); w++)
+    sd_ewald_image_pairs_apply(s->images + w, here->n, F, here->ghosts, u);
   add_means(s, sums, u);
   return SD_OK;
 }

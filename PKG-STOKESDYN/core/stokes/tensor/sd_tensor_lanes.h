@@ -42,6 +42,27 @@ INLINE void block(vec r2, vec ai, vec aj, vec squares, vec *f, vec *h)
   }
 }
 
+/* The same of spheres of one radius, without a branch: those that overlap have
+ * f = 4/3 (1/a - 9 R/(32 a^2)), h = 1/(8 a^2 R). */
+typedef struct {
+  vec squares, touch2, f0, f1, h0;
+} alike;
+
+INLINE alike alike_of(real a)
+{
+  const vec one = all(a), i = all(1.0) / one;
+  return (alike){all(2.0) * one * one, all(4.0) * one * one, all(4.0 / 3.0) * i, all(-3.0 / 8.0) * i * i,
+                 all(1.0 / 8.0) * i * i};
+}
+
+INLINE void block_alike(vec r2, const alike *a, vec *f, vec *h)
+{
+  const vec y = inverse_root(larger(r2, all((real) 1e-30))), y2 = y * y, ym = y * (a->squares * y2);
+  const yes_no over = r2 <= a->touch2;
+  *f = where(over, a->f0 + a->f1 * (r2 * y), y + ym * all(1.0 / 3.0));
+  *h = where(over, a->h0 * y, (y - ym) * y2);
+}
+
 /* f, h of the force; c of the cross products, for the sphere i that turns under the force on j
  * (cij) and the other way round (cji), over R; k, e of the torque, e over R^2. */
 typedef struct {
@@ -70,6 +91,19 @@ NOT_INLINE void grand_overlap(vec r2, vec ai, vec aj, grand *out)
   out->e = where(inside, zero, g * iR * iR);
   out->cij = where(swap, c_small, c_large); /* of equal radii both are the same, or act on R = 0 */
   out->cji = where(swap, c_large, c_small);
+}
+
+/* Of spheres of one radius, without a branch: those that overlap have with the lens and the cube of above
+ *   c = (1/2 - 3 R/(16 a))/a^3,  k = (1 - 27 R/(32 a) + 5 R^3/(64 a^3))/a^3,  e = (9/32 - 3 R^2/(64 a^2))/(a^4 R) */
+INLINE void grand_alike(vec r2, const alike *a, grand *b)
+{
+  const vec y = inverse_root(larger(r2, all((real) 1e-30))), y2 = y * y, y3 = y * y2, R = r2 * y;
+  const vec i = all(0.75) * a->f0, i3 = i * i * i, q = R * i, q2 = q * q;
+  const yes_no over = r2 <= a->touch2;
+  block_alike(r2, a, &b->f, &b->h);
+  b->cij = b->cji = where(over, i3 * (all(0.5) - all(3.0 / 16.0) * q), y3);
+  b->k = where(over, i3 * (all(1.0) - q * (all(27.0 / 32.0) - all(5.0 / 64.0) * q2)), all(-0.5) * y3);
+  b->e = where(over, i3 * i * y * (all(9.0 / 32.0) - all(3.0 / 64.0) * q2), all(1.5) * y3 * y2);
 }
 
 INLINE void grand_block(vec r2, vec ai, vec aj, vec squares, grand *b)

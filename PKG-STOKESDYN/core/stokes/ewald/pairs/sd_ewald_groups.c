@@ -6,6 +6,7 @@
 
 #include "sd_constants.h"
 #include "sd_ewald_pairs.h"
+#include "sd_ewald_rows.h"
 #include "sd_linear.h"
 #include "sd_room.h"
 

@@ -53,6 +53,12 @@ INLINE vec difference(vec a, vec b, vec unit)
 }
 #endif
 
+#ifdef SD_SINGLE
+enum { SINGLE = 1 };
+#else
+enum { SINGLE = 0 };
+#endif
+
 /* COUNT polynomials of one degree at once: coefficient [COUNT][stride] */
 INLINE void horner(int count, int degree, const real *coefficient, int stride, vec t, vec *value)
 {
@@ -88,7 +94,8 @@ static void near_polynomials_of(const sd_near_part *p, near_polynomials *c)
     for (int k = 0; k <= p->degree; k++) c->of[f][k] = (real) p->coefficient[f][k];
 }
 
-/* Forces. equal: all radii are a_ref, and two polynomials do. */
+/* Forces. equal: all radii are a_ref, and two polynomials do; in floats the arithmetic of a pair is so short
+ * that a branch costs more than the formulas on both its sides. */
 INLINE void near_forces(int equal, int degree, const sd_near_part *p)
 {
   const real *rows = p->row;
@@ -98,6 +105,7 @@ INLINE void near_forces(int equal, int degree, const sd_near_part *p)
   const vec unit = all((real) p->unit), range2 = all((real) p->range2), twice = all((real) (2.0 / p->range2));
   const vec one = all(1.0), ref2 = all((real) p->ref2);
   const vec sixth = all(1.0 / 6.0);
+  const alike of_all = alike_of((real) sqrt(p->ref2));
   for (int i = 0; i < p->rows; i++) {
     const real *own = rows + 8 * (long) i;
     const vec x = all(own[0]), y = all(own[1]), z = all(own[2]), a = all(own[3]);
@@ -112,13 +120,15 @@ INLINE void near_forces(int equal, int degree, const sd_near_part *p)
     vec u0 = all(0.0), u1 = u0, u2 = u0;
     for (long k = p->first[i]; k < end; k += LANES) {
       const int *j = p->neighbor + k;
-      vec at[4], F[4], f, h, D[4];
-      gather(rows, 8, j, at);
-      gather(rows + 4, 8, j, F);
+      vec at[8], *F = at + 4, f, h, D[4];
+      gather_eight(rows, j, at);
       const vec dx = difference(x, at[0], unit), dy = difference(y, at[1], unit);
       const vec dz = difference(z, at[2], unit), aj = at[3];
       const vec r2 = dx * dx + dy * dy + dz * dz, t = smaller(r2, range2) * twice - one;
-      block(r2, a, aj, a2 + aj * aj, &f, &h);
+      if (equal && SINGLE)
+        block_alike(r2, &of_all, &f, &h);
+      else
+        block(r2, a, aj, a2 + aj * aj, &f, &h);
       horner(equal ? 2 : 4, degree, c, SD_RADIAL_TERMS, t, D);
       if (equal) {
         f -= D[0];
@@ -143,8 +153,8 @@ INLINE void near_forces(int equal, int degree, const sd_near_part *p)
   }
 }
 
-/* With torques all eight, whatever the radii. */
-INLINE void near_torques(int degree, const sd_near_part *p)
+/* With torques all eight; of equal radii those that b is not a factor of */
+INLINE void near_torques(int equal, int degree, const sd_near_part *p)
 {
   const real *rows = p->row, *turns = p->torque_row;
   real *sums = p->u;
@@ -153,6 +163,7 @@ INLINE void near_torques(int degree, const sd_near_part *p)
   const vec unit = all((real) p->unit), range2 = all((real) p->range2), twice = all((real) (2.0 / p->range2));
   const vec one = all(1.0), ref2 = all((real) p->ref2);
   const vec quarter = all(0.25), sixth = all(1.0 / 6.0);
+  const alike of_all = alike_of((real) sqrt(p->ref2));
   for (int i = 0; i < p->rows; i++) {
     const real *own = rows + 8 * (long) i, *turn = turns + 4 * (long) i;
     const vec x = all(own[0]), y = all(own[1]), z = all(own[2]), a = all(own[3]);
@@ -166,21 +177,31 @@ INLINE void near_torques(int degree, const sd_near_part *p)
     const long end = p->first[i + 1];
     for (long k = p->first[i]; k < end; k += LANES) {
       const int *j = p->neighbor + k;
-      vec at[4], F[7], D[SD_RADIALS], v[6];
+      vec at[11], *F = at + 4, D[SD_RADIALS], v[6];
       grand b;
-      gather(rows, 8, j, at);
-      gather(rows + 4, 8, j, F);
+      gather_eight(rows, j, at);
       gather(turns, 4, j, F + 3);
       const vec dx = difference(x, at[0], unit), dy = difference(y, at[1], unit);
       const vec dz = difference(z, at[2], unit), aj = at[3];
       const vec r2 = dx * dx + dy * dy + dz * dz, t = smaller(r2, range2) * twice - one;
-      grand_block(r2, a, aj, a * a + aj * aj, &b);
-      horner(SD_RADIALS, degree, shared.of[0], SD_RADIAL_TERMS, t, D);
-      const vec bj = (aj * aj - ref2) * sixth, sum = bi + bj, product = bi * bj;
-      b.f -= D[SD_I0] - sum * D[SD_I1] + product * D[SD_I2];
-      b.h -= D[SD_J0] - sum * D[SD_J1] + product * D[SD_J2];
-      b.cij -= D[SD_K0] - bj * D[SD_K1];
-      b.cji -= D[SD_K0] - bi * D[SD_K1];
+      if (equal && SINGLE)
+        grand_alike(r2, &of_all, &b);
+      else
+        grand_block(r2, a, aj, a * a + aj * aj, &b);
+      horner(equal ? SD_I2 : SD_RADIALS, degree, shared.of[0], SD_RADIAL_TERMS, t, D);
+      if (equal) {
+        horner(1, degree, shared.of[SD_K0], SD_RADIAL_TERMS, t, D + SD_K0);
+        b.f -= D[SD_I0];
+        b.h -= D[SD_J0];
+        b.cij -= D[SD_K0];
+        b.cji -= D[SD_K0];
+      } else {
+        const vec bj = (aj * aj - ref2) * sixth, sum = bi + bj, product = bi * bj;
+        b.f -= D[SD_I0] - sum * D[SD_I1] + product * D[SD_I2];
+        b.h -= D[SD_J0] - sum * D[SD_J1] + product * D[SD_J2];
+        b.cij -= D[SD_K0] - bj * D[SD_K1];
+        b.cji -= D[SD_K0] - bi * D[SD_K1];
+      }
       b.k -= quarter * D[SD_I1];
       b.e -= quarter * D[SD_J1];
       grand_add(&b, b.cji, b.cij, dx, dy, dz, F, u);
@@ -207,24 +228,26 @@ INLINE void near_torques(int degree, const sd_near_part *p)
   {                                                   \
     near_forces(0, d, p);                             \
   }                                                   \
-  static void near_torques_##d(const sd_near_part *p) \
+  static void turn_equal_##d(const sd_near_part *p)   \
   {                                                   \
-    near_torques(d, p);                               \
+    near_torques(1, d, p);                            \
+  }                                                   \
+  static void turn_any_##d(const sd_near_part *p)     \
+  {                                                   \
+    near_torques(0, d, p);                            \
   }
 SD_NEAR_DEGREES(OF_DEGREE)
 #undef OF_DEGREE
 
 static void near_part(const sd_near_part *p)
 {
-#define OF_DEGREE(d)       \
-  if (p->degree == (d)) {  \
-    if (p->width == 6)     \
-      near_torques_##d(p); \
-    else if (p->equal)     \
-      near_equal_##d(p);   \
-    else                   \
-      near_any_##d(p);     \
-    return;                \
+#define OF_DEGREE(d)                                    \
+  if (p->degree == (d)) {                               \
+    if (p->width == 6)                                  \
+      (p->equal ? turn_equal_##d : turn_any_##d)(p);    \
+    else                                                \
+      (p->equal ? near_equal_##d : near_any_##d)(p);    \
+    return;                                             \
   }
   SD_NEAR_DEGREES(OF_DEGREE)
 #undef OF_DEGREE

@@ -1,12 +1,11 @@
 #include "sd_ewald_pairs.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "sd_constants.h"
-#include "sd_real.h"
+#include "sd_ewald_rows.h"
 #include "sd_room.h"
 
 void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
@@ -15,6 +14,7 @@ void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
   p->kernels = kernels;
   p->bytes = kernels->bytes;
   p->doubles = p->bytes == sizeof(double) ? kernels : SD_KERNELS_OF(sd_ewald, plain, sd_isa_of(SD_ISA_BEST));
+  p->numbers = p->bytes == sizeof(double) ? &sd_ewald_rows_doubles : &sd_ewald_rows_floats;
   p->full = (int) (SD_FULL * sizeof(double) / p->bytes);
   p->ewald = *e;
   p->width = width;
@@ -41,20 +41,26 @@ static double *centres_of(const sd_ewald_pairs *p)
   return p->u;
 }
 
+static size_t numbers_of_sum(const sd_ewald_pairs *p)
+{
+  return p->width == 6 ? 8 : 4;
+}
+
 /* The last centres are read in whole vectors. */
 static int ep_make_room(sd_ewald_pairs *p, int n)
 {
-  const size_t rows = (size_t) n + 1, sums = (p->width == 6 ? 8 : 4) * p->bytes, centre = 3 * sizeof(double);
-  const size_t in_rows = 8 * p->bytes * rows, turns = p->width == 6 ? 4 * p->bytes * rows : 0;
-  const size_t in_u = (sums > centre ? sums : centre) * rows + SD_FULL * sizeof(double);
-  const size_t doubles = (in_rows + in_u + turns) / sizeof(double) + 1;
-  p->row = sd_reserve_lines(&p->memory, doubles, &p->room);
+  const size_t rows = (size_t) n + 1, all = (numbers_of_sum(p) + (size_t) p->width) * p->bytes;
+  const size_t centre = 3 * sizeof(double), in_rows = 8 * p->bytes * rows;
+  const size_t turns = p->width == 6 ? 4 * p->bytes * rows : 0;
+  const size_t in_u = (all > centre ? all : centre) * rows + SD_FULL * sizeof(double);
+  p->row = sd_reserve_lines(&p->memory, (in_rows + turns + in_u) / sizeof(double) + 1, &p->room);
   if (!p->row || !sd_reserve(&p->sphere, sizeof(int), rows, &p->sphere_room) ||
       !sd_reserve(&p->target, sizeof(int), rows, &p->target_room) ||
       !sd_reserve(&p->first, sizeof(long), rows, &p->first_room))
     return 0;
-  p->u = (char *) p->row + in_rows;
-  p->torque_row = turns > 0 ? (char *) p->u + in_u : NULL;
+  p->torque_row = turns > 0 ? (char *) p->row + in_rows : NULL;
+  p->u = (char *) p->row + in_rows + turns;
+  p->waves = (char *) p->u + numbers_of_sum(p) * p->bytes * rows;
   return 1;
 }
 
@@ -72,26 +78,6 @@ static sd_status sort_spheres(sd_ewald_pairs *p, int n, int n_all)
   return SD_OK;
 }
 
-/* Of floats: how many of the whole numbers that are coordinates make a length; 2^32 are four ranges. */
-static double steps_per_length(const sd_ewald_pairs *p)
-{
-  return 0x1p30 / p->ewald.range;
-}
-
-/* The coordinates of a row */
-static void put_place(const sd_ewald_pairs *p, long row, const double *x)
-{
-  for (int d = 0; d < 3; d++) {
-    if (p->bytes == sizeof(double)) {
-      ((double *) p->row)[8 * row + d] = x[d] * p->scale;
-      continue;
-    }
-    const double steps = floor(x[d] * steps_per_length(p) + 0.5), turn = 0x1p32;
-    const uint32_t whole = (uint32_t) (steps - turn * floor(steps / turn));
-    memcpy((float *) p->row + 8 * row + d, &whole, sizeof(whole));
-  }
-}
-
 static void pairs_fill_rows(sd_ewald_pairs *p)
 {
   double largest = 0.0, *centre = centres_of(p);
@@ -100,13 +86,10 @@ static void pairs_fill_rows(sd_ewald_pairs *p)
   p->equal = 1;
   for (int k = 0; k < p->rows; k++) {
     const long i = p->sphere[k];
-    put_place(p, k, p->spheres.x + 3 * i);
     for (int d = 0; d < 3; d++) centre[(long) d * p->rows + k] = p->spheres.x[3 * i + d];
-    sd_put_number(p->row, p->bytes, 8L * k + 3, p->spheres.a[i] * p->scale);
     p->equal = p->equal && p->spheres.a[i] == p->ewald.a_ref;
   }
-  for (int d = 0; d < 8; d++) sd_put_number(p->row, p->bytes, 8L * p->rows + d, d < 3 ? SD_NOWHERE : 0.0);
-  for (int d = 0; d < 4 && p->width == 6; d++) sd_put_number(p->torque_row, p->bytes, 4L * p->rows + d, 0.0);
+  p->numbers->stand(p);
 }
 
 /* --- neighbours --- */
@@ -170,18 +153,6 @@ sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, const sd_
 
 /* --- product --- */
 
-static void ep_load(sd_ewald_pairs *p, int n, const double *F, const double *ghosts)
-{
-  const long m = p->width;
-  for (long k = 0; k < p->rows; k++) {
-    const long i = p->sphere[k];
-    const double w = p->spheres.w[i], *from = i < n ? F + m * i : ghosts + m * (i - n);
-    for (int d = 0; d < 3; d++) sd_put_number(p->row, p->bytes, 8 * k + 4 + d, w * from[d]);
-    for (int d = 3; d < m; d++)
-      sd_put_number(p->torque_row, p->bytes, 4 * k + d - 3, w * p->scale * from[d]);
-  }
-}
-
 /* The kernels' table: lengths scaled, and times 8 pi. */
 sd_near_part sd_ewald_pairs_part(const sd_ewald_pairs *p)
 {
@@ -193,7 +164,7 @@ sd_near_part sd_ewald_pairs_part(const sd_ewald_pairs *p)
                     .torque_row = p->torque_row,
                     .u = p->u,
                     .degree = p->degree};
-  k.unit = p->scale / steps_per_length(p);
+  k.unit = p->scale / sd_ewald_pairs_steps(p);
   const double s = p->scale, range = p->ewald.range * s, ref = p->ewald.a_ref * s;
   k.range2 = range * range;
   k.ref2 = ref * ref;
@@ -206,40 +177,24 @@ sd_near_part sd_ewald_pairs_part(const sd_ewald_pairs *p)
   return k;
 }
 
-void sd_ewald_pairs_apply(sd_ewald_pairs *p, int n, const double *F, const double *ghosts,
-                          double *u)
+void sd_ewald_pairs_apply(sd_ewald_pairs *p, int n, const double *F, const double *ghosts, double *sums)
 {
-  const long m = p->width;
-  ep_load(p, n, F, ghosts);
   const sd_near_part k = sd_ewald_pairs_part(p);
-  const long step = m == 6 ? 8 : 4;
-  memset(p->u, 0, p->bytes * (size_t) (step * (p->rows + 1)));
+  p->numbers->load(p, n, F, ghosts, sums);
+  memset(p->u, 0, p->bytes * numbers_of_sum(p) * ((size_t) p->rows + 1));
   p->kernels->near_part(&k);
-  memset(u, 0, sizeof(double) * (size_t) m * (size_t) n);
-  for (int i = 0; i < p->n; i++) {
-    const long j = p->sphere[p->target[i]];
-    const long near = step * p->target[i];
-    const double w = p->spheres.w[j], unit = w * p->scale / (8.0 * SD_PI);
-    const double b = sd_ewald_b(&p->ewald, p->spheres.a[j]);
-    const double self = p->origin[SD_I0] - 2.0 * b * p->origin[SD_I1] + b * b * p->origin[SD_I2];
-    for (int d = 0; d < 3; d++) u[m * j + d] = unit * sd_number(p->u, p->bytes, near + d) - w * w * self * F[m * j + d];
-    for (int d = 3; d < m; d++)
-      u[m * j + d] = unit * p->scale * sd_number(p->u, p->bytes, near + d + 1) -
-          0.25 * w * w * p->origin[SD_I1] * F[m * j + d];
-  }
-  sd_ewald_groups_apply(p, F, u);
 }
 
-/* The scale of torques is a power of two, and nothing is lost. */
 void *sd_ewald_pairs_rows(sd_ewald_pairs *p)
 {
-  const size_t bytes = p->bytes;
-  const long m = p->width;
-  for (int i = 0; i < p->n; i++) {
-    const long k = p->target[i];
-    memcpy(sd_at_number(p->u, bytes, m * i), sd_at_number(p->row, bytes, 8 * k + 4), 3 * bytes);
-    for (int d = 3; d < m; d++)
-      sd_put_number(p->u, bytes, m * i + d, sd_number(p->torque_row, bytes, 4 * k + d - 3) / p->scale);
-  }
-  return p->u;
+  p->numbers->of_targets(p, p->waves);
+  return p->waves;
+}
+
+void sd_ewald_pairs_take(const sd_ewald_pairs *p, int n, const double *F, const void *rows,
+                         const double *tail, const double *sums, double *u)
+{
+  memset(u, 0, sizeof(double) * (size_t) p->width * (size_t) n);
+  p->numbers->take(p, F, rows, tail, sums, u);
+  sd_ewald_groups_apply(p, F, u);
 }

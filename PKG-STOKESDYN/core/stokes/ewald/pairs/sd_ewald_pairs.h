@@ -13,14 +13,14 @@
 
 SD_BEGIN_C
 
-/* Coordinates of the row that stands for nothing: no force, and far from everything */
-#define SD_NOWHERE 1e16
+struct sd_ewald_rows;
 
 /* Zero-initialise; sd_ewald_pairs_free in the end. */
 typedef struct sd_ewald_pairs {
   const struct sd_ewald_kernels *kernels;
   /* those of doubles, for what has no other */
   const struct sd_ewald_kernels *doubles;
+  const struct sd_ewald_rows *numbers;
   sd_ewald ewald;
   int width, degree;
   double coefficient[SD_RADIALS][SD_RADIAL_TERMS], origin[SD_RADIALS], scale;
@@ -36,10 +36,10 @@ typedef struct sd_ewald_pairs {
   int *neighbor;
   /* lists are filled up to a multiple of so many, whole vectors of every set */
   int full;
-  /* sd_near_part's, in one block, `bytes` a number; between two products u has room for a row of
-   * numbers for each sphere, and before them it holds the centres [3][rows], doubles */
+  /* sd_near_part's, in one block, `bytes` a number, and of waves [width rows]; u and they hold the centres
+   * [3][rows] before, doubles */
   size_t bytes;
-  void *row, *torque_row, *u;
+  void *row, *torque_row, *u, *waves;
   double *memory;
   size_t room, sphere_room, target_room, first_room, neighbor_room;
   /* rows are found by these: one by one, or where they stand in groups, by groups */
@@ -55,18 +55,24 @@ void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
 sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, const sd_groups *groups, int n,
                                int n_all);
 
-/* F [width n] of ours and ghosts [width (n_all - n)] -> u [width n]; 0 for spheres without radius */
-void sd_ewald_pairs_apply(sd_ewald_pairs *p, int n, const double *F, const double *ghosts,
-                          double *u);
+/* A product, in three steps. The first sums what is near, of F [width n] of ours and ghosts
+ * [width (n_all - n)]; sums [9], out: of w F, b w F and w T of ours, in order of targets. */
+void sd_ewald_pairs_apply(sd_ewald_pairs *p, int n, const double *F, const double *ghosts, double *sums);
+
+/* Rows [width] for each target, w F, which may become what waves do to it: in memory that lasts until the next
+ * product */
+void *sd_ewald_pairs_rows(sd_ewald_pairs *p);
+
+/* u [width n] = w (what is near; rows of velocities, NULL: none; and what is beyond the range of a periodic
+ * box, as a mean: the tail of sd_radial.h, and the sums of all ranks, NULL: none); 0 for spheres without
+ * radius. */
+void sd_ewald_pairs_take(const sd_ewald_pairs *p, int n, const double *F, const void *rows,
+                         const double *tail, const double *sums, double *u);
 
 /* For sd_ewald_groups: neighbours of a row among so many ranges of rows, behind the first `many` of all;
  * returns how many there are then. And the kernels' table. */
 long sd_ewald_pairs_near(sd_ewald_pairs *p, int row, int ranges, const int *range, long many);
 sd_near_part sd_ewald_pairs_part(const sd_ewald_pairs *p);
-
-/* Afterwards, of the same forces: rows [width] for each target, w F, in memory that lasts until the
- * next product */
-void *sd_ewald_pairs_rows(sd_ewald_pairs *p);
 
 void sd_ewald_pairs_free(sd_ewald_pairs *p);
 

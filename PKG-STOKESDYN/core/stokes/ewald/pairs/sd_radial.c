@@ -35,11 +35,6 @@ double sd_ewald_wave_screen(const sd_ewald *e, double k2)
   return e->taken > 0.0 ? H - screen(e->taken, e->a_ref, k2) : H;
 }
 
-double sd_ewald_b(const sd_ewald *e, double a)
-{
-  return (a - e->a_ref) * (a + e->a_ref) / 6.0;
-}
-
 /* Laplacian: lap f = 3 f[1] + R^2 f[2], and (1/R d/dR)^n (R^2 g) = R^2 g[n] + 2n g[n - 1] */
 static void laplacian(double R2, const double *f, int terms, double *lap)
 {

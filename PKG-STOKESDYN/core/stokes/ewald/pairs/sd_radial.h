@@ -33,9 +33,14 @@ enum { SD_I0, SD_J0, SD_I1, SD_J1, SD_I2, SD_J2, SD_K0, SD_K1, SD_RADIALS };
 /* Terms of the longest polynomial that stands for one of them */
 enum { SD_RADIAL_TERMS = 40 };
 
-/* H(k^2) of the wave part, less what a smoother splitting has taken, and b of a radius */
+/* H(k^2) of the wave part, less what a smoother splitting has taken */
 double sd_ewald_wave_screen(const sd_ewald *e, double k2);
-double sd_ewald_b(const sd_ewald *e, double a);
+
+/* b of a radius */
+static inline double sd_ewald_b(const sd_ewald *e, double a)
+{
+  return (a - e->a_ref) * (a + e->a_ref) / 6.0;
+}
 
 /* A filter: 1/length, length */
 typedef struct {

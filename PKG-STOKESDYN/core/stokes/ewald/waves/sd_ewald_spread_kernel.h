@@ -13,6 +13,8 @@ typedef struct {
   int n, width, points, degree, lo[3];
   const sd_spread_place *place;
   real *F, *brick, metric[6], gradient[3][3], coefficient[SD_WINDOW_TERMS][MOST_POINTS + LANES];
+  /* along a row of the grid, where each point has three numbers: the same thrice, and which is whose */
+  real thrice[SD_WINDOW_TERMS][MOST_ROW], of[3][MOST_ROW];
   long row, layer;
 } spreading;
 
@@ -33,30 +35,26 @@ static void in_reals(const sd_spreading *from, spreading *s)
   for (int k = 0; k < 6; k++) s->metric[k] = (real) from->metric[k];
   for (int k = 0; k < 9; k++) s->gradient[k / 3][k % 3] = (real) from->gradient[k / 3][k % 3];
   for (int m = 0; m <= w->degree; m++)
-    for (int k = 0; k < w->points; k++) s->coefficient[m][k] = (real) w->coefficient[m][k];
+    for (int k = 0; k < 3 * w->points; k++)
+      s->coefficient[m][k / 3] = s->thrice[m][k] = (real) w->coefficient[m][k / 3];
+  for (int k = 0; k < 3 * w->points; k++) s->of[k % 3][k] = 1;
 }
 
-/* phi, and with derivatives phi' and phi'', at the points of one direction; derivatives with
- * respect to the grid's coordinate: d/ds = -2 d/dv. */
-INLINE void window_at(const spreading *w, double v_, int derivatives, real *value, real *first,
-                      real *second)
+/* phi, and with derivatives phi' and phi'', at LANES columns of the coefficients [][stride] from here on;
+ * derivatives with respect to the grid's coordinate: d/ds = -2 d/dv. */
+INLINE void window_at(const real *coefficient, int stride, int degree, int derivatives, vec v, vec *value)
 {
-  const vec v = all((real) v_);
-  for (int k = 0; k < w->points; k += LANES) {
-    vec f = load_any(w->coefficient[w->degree] + k), f1 = all(0.0), f2 = f1;
-    for (int m = w->degree - 1; m >= 0; m--) {
-      if (derivatives) {
-        f2 = f2 * v + f1;
-        f1 = f1 * v + f;
-      }
-      f = f * v + load_any(w->coefficient[m] + k);
-    }
-    store_any(value + k, f);
+  vec f = load_any(coefficient + degree * stride), f1 = all(0.0), f2 = f1;
+  for (int m = degree - 1; m >= 0; m--) {
     if (derivatives) {
-      store_any(first + k, all(-2.0) * f1);
-      store_any(second + k, all(8.0) * f2); /* f2 is half the second derivative */
+      f2 = f2 * v + f1;
+      f1 = f1 * v + f;
     }
+    f = f * v + load_any(coefficient + m * stride);
   }
+  value[0] = f;
+  value[1] = all(-2.0) * f1;
+  value[2] = all(8.0) * f2; /* f2 is half the second derivative */
 }
 
 /* Windows of a sphere in x, y, z with derivatives */
@@ -65,10 +63,17 @@ typedef struct {
       second[3][MOST_POINTS + LANES];
 } windows;
 
-INLINE void windows_at(int terms, const spreading *s, const sd_spread_place *at, windows *w)
+INLINE void windows_at(int directions, int terms, const spreading *s, const sd_spread_place *at, windows *w)
 {
-  for (int d = 0; d < 3; d++)
-    window_at(s, at->v[d], terms > 1, w->value[d], w->first[d], w->second[d]);
+  for (int d = 0; d < directions; d++)
+    for (int k = 0; k < s->points; k += LANES) {
+      vec f[3];
+      window_at(s->coefficient[0] + k, MOST_POINTS + LANES, s->degree, terms > 1, all((real) at->v[d]), f);
+      store_any(w->value[d] + k, f[0]);
+      if (terms == 1) continue;
+      store_any(w->first[d] + k, f[1]);
+      store_any(w->second[d] + k, f[2]);
+    }
 }
 
 /* m_t at point p of x, q of y */
@@ -86,34 +91,44 @@ INLINE void factors(int terms, const spreading *s, const windows *w, int p, int 
   m[3] = x * y1;
 }
 
-/* V_t [points][3]. Torques: grad w x T / 2 = sum_d dw/dx_d tau_d, tau_d = G_d x T / 2. */
-INLINE void rows_of_force(int terms, const spreading *s, const windows *w, const real *F,
-                          real b, real V[4][MOST_ROW])
+/* What a sphere spreads: F; and of torques, grad w x T / 2 = sum_d dw/dx_d tau_d, tau_d = G_d x T / 2 */
+INLINE void strengths(int terms, const spreading *s, const real *F, real to[4][3])
 {
-  const real *z = w->value[2], *z1 = w->first[2], *z2 = w->second[2], *g = s->metric;
-  const real half = (real) 0.5;
-  real tau[3][3] = {{0}};
-  if (terms == 4 && s->width == 6)
-    for (int d = 0; d < 3; d++) {
-      const real *G = s->gradient[d], *T = F + 3;
-      tau[d][0] = half * (G[1] * T[2] - G[2] * T[1]);
-      tau[d][1] = half * (G[2] * T[0] - G[0] * T[2]);
-      tau[d][2] = half * (G[0] * T[1] - G[1] * T[0]);
-    }
-  for (int k = 0; k < s->points; k++)
-    for (int c = 0; c < 3; c++) {
-      real *at = &V[0][3 * k + c];
-      if (terms == 1) {
-        *at = F[c] * z[k];
-        continue;
-      }
-      *at = F[c] * (z[k] + b * g[2] * z2[k]);
-      at[MOST_ROW] = b * F[c] * z[k];
-      if (terms == 2) continue;
-      *at += tau[2][c] * z1[k];
-      at[2 * MOST_ROW] = tau[0][c] * z[k] + 2 * b * g[4] * F[c] * z1[k];
-      at[3 * MOST_ROW] = tau[1][c] * z[k] + 2 * b * g[5] * F[c] * z1[k];
-    }
+  memset(to, 0, sizeof(real[4][3]));
+  for (int c = 0; c < 3; c++) to[0][c] = F[c];
+  if (terms < 4 || s->width < 6) return;
+  const real half = (real) 0.5, *T = F + 3;
+  for (int d = 0; d < 3; d++) {
+    const real *G = s->gradient[d];
+    to[1 + d][0] = half * (G[1] * T[2] - G[2] * T[1]);
+    to[1 + d][1] = half * (G[2] * T[0] - G[0] * T[2]);
+    to[1 + d][2] = half * (G[0] * T[1] - G[1] * T[0]);
+  }
+}
+
+/* LANES numbers of V_t [points][3], from `skip` on */
+INLINE void row_of_force(int terms, const spreading *s, int skip, const sd_spread_place *at, real from[4][3],
+                         vec V[4])
+{
+  const real *g = s->metric;
+  const vec b = all((real) at->b);
+  vec z[3], mine[4];
+  window_at(s->thrice[0] + skip, MOST_ROW, s->degree, terms > 1, all((real) at->v[2]), z);
+#pragma GCC unroll 4
+  for (int t = 0; t < terms; t++) {
+    mine[t] = all(from[t][0]) * load_any(s->of[0] + skip);
+    for (int c = 1; c < 3; c++) mine[t] += all(from[t][c]) * load_any(s->of[c] + skip);
+  }
+  if (terms == 1) {
+    V[0] = mine[0] * z[0];
+    return;
+  }
+  V[0] = mine[0] * (z[0] + b * all(g[2]) * z[2]);
+  V[1] = b * mine[0] * z[0];
+  if (terms == 2) return;
+  V[0] += mine[3] * z[1];
+  V[2] = mine[1] * z[0] + all(2 * g[4]) * b * mine[0] * z[1];
+  V[3] = mine[2] * z[0] + all(2 * g[5]) * b * mine[0] * z[1];
 }
 
 /* The first point of a sphere in the brick */
@@ -123,16 +138,15 @@ INLINE real *corner_of(const spreading *s, const sd_spread_place *at)
          3L * (at->at[2] - s->lo[2]);
 }
 
-/* vectors: of a chunk */
+/* vectors: of a chunk, the numbers from `skip` on */
 INLINE void spread_chunk(int terms, int vectors, const spreading *s, const windows *w,
-                         const real *V, real *corner)
+                         const sd_spread_place *at, real from[4][3], int skip)
 {
   const int points = s->points;
-  vec v[4][MOST_VECTORS];
-#pragma GCC unroll 4
-  for (int t = 0; t < terms; t++)
+  real *corner = corner_of(s, at) + skip;
+  vec v[MOST_VECTORS][4];
 #pragma GCC unroll 6
-    for (int l = 0; l < vectors; l++) v[t][l] = load_any(V + t * MOST_ROW + LANES * l);
+  for (int l = 0; l < vectors; l++) row_of_force(terms, s, skip + LANES * l, at, from, v[l]);
   for (int p = 0; p < points; p++)
     for (int q = 0; q < points; q++) {
       real *row = corner + p * s->layer + q * s->row, m[4];
@@ -141,7 +155,7 @@ INLINE void spread_chunk(int terms, int vectors, const spreading *s, const windo
       for (int l = 0; l < vectors; l++) {
         vec sum = load_any(row + LANES * l);
 #pragma GCC unroll 4
-        for (int t = 0; t < terms; t++) sum += all(m[t]) * v[t][l];
+        for (int t = 0; t < terms; t++) sum += all(m[t]) * v[l][t];
         store_any(row + LANES * l, sum);
       }
     }
@@ -149,20 +163,17 @@ INLINE void spread_chunk(int terms, int vectors, const spreading *s, const windo
 
 INLINE void spread_with(int terms, int vectors, int chunks, const spreading *s)
 {
-  real V[4][MOST_ROW] = {{0}}; /* beyond the points it stays 0 */
   windows w;
   for (int i = 0; i < s->n; i++) {
     const sd_spread_place *at = s->place + i;
-    windows_at(terms, s, at, &w);
-    rows_of_force(terms, s, &w, s->F + (long) s->width * i, at->b, V);
-    for (int c = 0; c < chunks; c++) {
-      const int skip = c * vectors * LANES;
-      spread_chunk(terms, vectors, s, &w, V[0] + skip, corner_of(s, at) + skip);
-    }
+    real from[4][3];
+    windows_at(2, terms, s, at, &w);
+    strengths(terms, s, s->F + (long) s->width * i, from);
+    for (int c = 0; c < chunks; c++) spread_chunk(terms, vectors, s, &w, at, from, c * vectors * LANES);
   }
 }
 
-/* The transpose of rows_of_force: U and W from S_t = sum_pq m_t row. */
+/* The transpose of row_of_force: U and W from S_t = sum_pq m_t row. */
 INLINE void force_of_rows(int terms, const spreading *s, const windows *w, real b,
                           real S[4][MOST_ROW], real *U)
 {
@@ -228,7 +239,7 @@ INLINE void interpolate_with(int terms, int vectors, int chunks, const spreading
   windows w;
   for (int i = 0; i < s->n; i++) {
     const sd_spread_place *at = s->place + i;
-    windows_at(terms, s, at, &w);
+    windows_at(3, terms, s, at, &w);
     for (int c = 0; c < chunks; c++) {
       const int skip = c * vectors * LANES;
       gather_chunk(terms, vectors, s, &w, corner_of(s, at) + skip, S[0] + skip);

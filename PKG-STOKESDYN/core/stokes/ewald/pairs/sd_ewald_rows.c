@@ -1,0 +1,127 @@
+/* What goes into the rows of the near part and what comes out of them. Of doubles; sd_ewald_rows_floats.c: the
+ * same of floats. */
+#include "sd_ewald_rows.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "sd_constants.h"
+#include "sd_real.h"
+
+/* --- places --- */
+
+static void put_place(const sd_ewald_pairs *p, real *row, const double *x)
+{
+#ifdef SD_SINGLE
+  for (int d = 0; d < 3; d++) {
+    const double steps = floor(x[d] * sd_ewald_pairs_steps(p) + 0.5), turn = 0x1p32;
+    const uint32_t whole = (uint32_t) (steps - turn * floor(steps / turn));
+    memcpy(row + d, &whole, sizeof(whole));
+  }
+#else
+  for (int d = 0; d < 3; d++) row[d] = x[d] * p->scale;
+#endif
+}
+
+static void rows_stand(sd_ewald_pairs *p)
+{
+  real *row = p->row, *turn = p->torque_row;
+  for (long k = 0; k < p->rows; k++) {
+    const long i = p->sphere[k];
+    put_place(p, row + 8 * k, p->spheres.x + 3 * i);
+    row[8 * k + 3] = (real) (p->spheres.a[i] * p->scale);
+    row[8 * k + 7] = (real) p->spheres.w[i];
+  }
+  for (long d = 0; d < 8; d++) row[8L * p->rows + d] = (real) (d < 3 ? SD_NOWHERE : 0.0);
+  for (long d = 0; d < 4 && turn; d++) turn[4L * p->rows + d] = 0;
+}
+
+/* --- forces --- */
+
+/* m: the width, of which the compiler makes a copy each */
+static inline void load_of_width(int m, const sd_ewald_pairs *p, int n, const double *F, const double *ghosts,
+                                 double *sums)
+{
+  real *row = p->row, *turn = p->torque_row;
+  const int *sphere = p->sphere;
+  const double scale = p->scale, length = 1.0 / scale;
+  double sum[9] = {0.0};
+  for (long k = 0; k < p->rows; k++) {
+    const long i = sphere[k];
+    real *to = row + 8 * k;
+    const double w = to[7], *from = i < n ? F + m * i : ghosts + m * (i - n);
+    const double b = p->equal || i >= n ? 0.0 : sd_ewald_b(&p->ewald, to[3] * length);
+    for (int d = 0; d < m; d++) {
+      const double f = w * from[d];
+      if (d < 3) to[4 + d] = (real) f;
+      else turn[4 * k + d - 3] = (real) (scale * f);
+      if (i >= n) continue;
+      sum[d < 3 ? d : d + 3] += f;
+      if (d < 3) sum[3 + d] += b * f;
+    }
+  }
+  memcpy(sums, sum, sizeof(sum));
+}
+
+static void rows_load(const sd_ewald_pairs *p, int n, const double *F, const double *ghosts, double *sums)
+{
+  if (p->width == 6) load_of_width(6, p, n, F, ghosts, sums);
+  else load_of_width(3, p, n, F, ghosts, sums);
+}
+
+/* The scale of torques is a power of two, and nothing is lost. */
+static void rows_of_targets(const sd_ewald_pairs *p, void *out)
+{
+  const real *row = p->row, *turn = p->torque_row, length = (real) (1.0 / p->scale);
+  real *to = out;
+  for (long i = 0; i < p->n; i++) {
+    const long k = p->target[i];
+    for (int d = 0; d < 3; d++) *to++ = row[8 * k + 4 + d];
+    for (int d = 0; d < 3 && turn; d++) *to++ = turn[4 * k + d] * length;
+  }
+}
+
+/* --- velocities --- */
+
+/* Of the sphere itself: what its own wave part is at no distance, and of torques */
+static double self_of(const sd_ewald_pairs *p, double b)
+{
+  return p->origin[SD_I0] - 2.0 * b * p->origin[SD_I1] + b * b * p->origin[SD_I2];
+}
+
+static inline void take_of_width(int m, const sd_ewald_pairs *p, const double *F, const real *waves,
+                                 const double *tail, const double *sums, double *u)
+{
+  const real *row = p->row, *near = p->u;
+  const int step = m == 6 ? 8 : 4;
+  const double scale = p->scale, length = 1.0 / scale, alike = self_of(p, 0.0), turned = 0.25 * p->origin[SD_I1];
+  const double over_V = 1.0 / sd_ewald_volume(&p->ewald.box), none[9] = {0.0};
+  const double *C = sums ? tail : none, *S = sums ? sums : none;
+  for (long i = 0; i < p->n; i++) {
+    const long k = p->target[i], j = p->sphere[k];
+    const double w = row[8 * k + 7], unit = w * scale / (8.0 * SD_PI);
+    const double b = p->equal ? 0.0 : sd_ewald_b(&p->ewald, row[8 * k + 3] * length);
+    const double self = p->equal ? alike : self_of(p, b);
+    for (int d = 0; d < m; d++) {
+      const double sum = d < 3 ? unit * near[step * k + d] : unit * scale * near[step * k + d + 1];
+      const double far = d < 3 ? (C[0] - b * C[1]) * S[d] - (C[1] - b * C[2]) * S[3 + d] : 0.25 * C[1] * S[3 + d];
+      double v = sum - w * w * (d < 3 ? self : turned) * F[m * j + d];
+      if (waves) v += w * waves[m * i + d];
+      u[m * j + d] = v + w * over_V * far;
+    }
+  }
+}
+
+static void rows_take(const sd_ewald_pairs *p, const double *F, const void *waves, const double *tail,
+                      const double *sums, double *u)
+{
+  if (p->width == 6) take_of_width(6, p, F, waves, tail, sums, u);
+  else take_of_width(3, p, F, waves, tail, sums, u);
+}
+
+#ifdef SD_SINGLE
+const struct sd_ewald_rows sd_ewald_rows_floats = {rows_stand, rows_load, rows_of_targets, rows_take};
+#else
+const struct sd_ewald_rows sd_ewald_rows_doubles = {rows_stand, rows_load, rows_of_targets, rows_take};
+#endif

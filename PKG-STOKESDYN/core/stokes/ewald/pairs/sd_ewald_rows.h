@@ -1,0 +1,29 @@
+/* What goes into the rows of the near part and what comes out of them (sd_ewald_pairs.h): loops over the
+ * spheres, of the precision of its kernels. */
+#ifndef SD_EWALD_ROWS_H
+#define SD_EWALD_ROWS_H
+
+#include "sd_ewald_pairs.h"
+
+/* Coordinates of the row that stands for nothing: no force, and far from everything */
+#define SD_NOWHERE 1e16
+
+struct sd_ewald_rows {
+  /* where the spheres stand, their radii, and w in the last number of a row */
+  void (*stand)(sd_ewald_pairs *p);
+  /* w F into the rows, and its sums; the rest as in sd_ewald_pairs.h */
+  void (*load)(const sd_ewald_pairs *p, int n, const double *F, const double *ghosts, double *sums);
+  void (*of_targets)(const sd_ewald_pairs *p, void *waves);
+  void (*take)(const sd_ewald_pairs *p, const double *F, const void *waves, const double *tail,
+               const double *sums, double *u);
+};
+
+extern const struct sd_ewald_rows sd_ewald_rows_doubles, sd_ewald_rows_floats;
+
+/* Of floats: how many of the whole numbers that are coordinates make a length; 2^32 are four ranges. */
+static inline double sd_ewald_pairs_steps(const sd_ewald_pairs *p)
+{
+  return 0x1p30 / p->ewald.range;
+}
+
+#endif
