@@ -198,7 +198,7 @@ def above_a_wall():
 
 
 SHARP = "cut_off_distance inf visc 1.1 relative_tolerance 1e-12 far_field_tolerance 1e-4 max_iter 400"
-CLOSE = 1e-9, 1e-8    # of places in a box of 18 and of velocities of about 5, with films as good as their solve
+CLOSE = 1e-10, 1e-9    # of places in a box of 18 and of velocities of about 5, with films as good as their solve
 WAYS = {"shells with films": ("p p p", close_spheres, f"{SHARP} multiblob 12 lubrication yes", TIGHT),
         "clumps of shells": ("p p p", in_few_clumps, f"{SHARP} rigid_clumps yes multiblob 12 lubrication yes", TIGHT),
         "clumps with a shell": ("f f f", in_few_clumps, f"{SHARP} rigid_clumps yes shell 12", TIGHT),

@@ -226,12 +226,12 @@ WAYS = {"shells with films": ("p p p", close_spheres, f"{SHARP} multiblob 12 lub
 
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
 def test_ranks_and_newton_do_not_matter(tmp_path, way):
-    check_ranks(tmp_path, way, 2e-9, 3e-8, BEYOND)
+    check_ranks(tmp_path, way, END=BEYOND)
 
 
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
 def test_a_run_in_pieces_is_the_run_in_one(tmp_path, way):
-    check_pieces(tmp_path, way, 2e-9, 3e-8, BEYOND)
+    check_pieces(tmp_path, way, END=BEYOND)
 
 
 @pytest.mark.parametrize("fluid, deform, scheme, message", [
