@@ -119,7 +119,7 @@ void WholeClumps::find()
     found.take(epochs.lists);
   }
   stand();
-  if (again) check_widths();
+  if (again || domain->box_change) check_widths();
 }
 
 void WholeClumps::stand()

@@ -132,6 +132,19 @@ def test_clump_wider_than_half_the_periodic_box_on_two_ranks_is_an_error(tmp_pat
     assert failed.code != 0 and "molecule 9 is wider than half of the periodic box" in failed.log
 
 
+@pytest.mark.parametrize("lists", ["check yes", "every 1000 delay 0 check no"])
+@pytest.mark.parametrize("noise", ["", "temperature 0.01 7"])
+def test_a_box_that_shrinks_below_twice_a_clump_is_an_error_in_that_step(simulation, lists, noise):
+    """From 10 by 0.1 in a step, along a clump of 4"""
+    spheres = Spheres([(3, 5, 5), (5, 5, 5), (7, 5, 5.2), (7, 7.1, 5.2)], molecule=9)
+    sim = simulation(spheres, "cut_off_distance inf visc 1 rigid_clumps yes multiblob 12 fluid_velocity box", fix=False, dt=0.01, boundary="p p p",
+                     box=[(0.0, 10.0)] * 3, tilt=(0.0, 0.0, 0.0), before_pair=f"comm_modify vel yes\nneigh_modify {lists}")
+    sim.commands(f"fix shrink all deform 1 x trate -1.0 remap v\nfix move all stokes_dynamics/overdamped {noise}")
+    with pytest.raises(LammpsError, match="molecule 9 is wider than half of the periodic box"):
+        sim.run(40)
+    assert 20 <= sim.lmp.extract_global("ntimestep") <= 24
+
+
 # In this box the image of the second sphere across the border in y is closer, and more than half of the box away.
 SKEW = dict(boundary="p p p", box=[(-5.0, 5.0)] * 3, tilt=(4.0, 0.0, 0.0))
 
