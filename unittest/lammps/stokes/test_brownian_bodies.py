@@ -1,10 +1,16 @@
 """Brownian motion of what sees each other as bodies: spheres as shells of points, clumps with shells, films, walls, held spheres.
 Covariance of one step against the mobility, Boltzmann's distribution, one run on several ranks and in pieces."""
+import os
+import sys
+
 import numpy as np
 import pytest
 
 from brownian import A, END, ETA, KT, SHORT, TIGHT, UNIT, check_covariance, check_pieces, check_ranks, check_same, end, in_a_plane, noise, script, steps_of
 from system import Spheres, input_lines, lmp
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "bench"))
+import dense_noise  # noqa: E402
 
 INF = f"cut_off_distance inf visc {ETA} relative_tolerance 1e-6"
 TRIO = A * np.array([(0, 0, 0), (2.1, 0, 0), (0.4, 2.2, 0.6)])
@@ -111,6 +117,13 @@ def test_steps_do_not_depend_on_the_unit_of_length(simulation, words, molecule):
         ends.append(sim.x / unit)
     assert np.abs(ends[0] - DUMBBELLS).max() > 0.01
     assert np.abs(ends[1] - ends[0]).max() < 1e-7
+
+
+@pytest.mark.parametrize("step, kT", [(8e-3, 0.2), (1e-3, 0.1)])
+def test_no_step_is_too_long_for_films_and_stiff_contacts(step, kT):
+    """Volume fraction 0.5; a long step makes spheres overlap more. Long runs: unittest/bench/dense_noise.py"""
+    energy, deepest, _, solve, failed = dense_noise.moments(1000.0, 1e-4, 4711, step, 0.15)
+    assert failed == 0 and solve < 30 and deepest < 0.15 and 0.2 * kT < energy < 3 * kT
 
 
 # --- equilibrium ----------------------------------------------------------------------------------------------------------
