@@ -21,9 +21,14 @@ def library():
     return found
 
 
+def cells(n):
+    """Edge of a cubic lattice of n places, in cells of four"""
+    return int(np.ceil((n / 4)**(1 / 3) - 1e-9))
+
+
 def lattice(n):
     """n places in a unit cube, of a cubic lattice whose cell has four, as far as there are; as far apart as may be"""
-    m = int(np.ceil((n / 4)**(1 / 3) - 1e-9))
+    m = cells(n)
     corners = np.array([(i, j, k) for i in range(m) for j in range(m) for k in range(m)], float)
     face = np.array([(0, 0, 0), (0.5, 0.5, 0), (0.5, 0, 0.5), (0, 0.5, 0.5)])
     every = ((corners[:, None] + face).reshape(-1, 3) + 0.25) / m
@@ -34,6 +39,8 @@ def hard_spheres(n, phi, sets, seed, melt=5000, between=400):
     """`sets` sets of places [n, 3] of spheres of radius 1 and the edge of their cube, each `between` sweeps after the last one; the
     first after `melt` sweeps from a lattice. In a sweep each sphere is displaced once, by as much as half of the trials allow."""
     move, edge = library().equilibrium, (4 / 3 * np.pi * n / phi)**(1 / 3)
+    if edge / cells(n) < 8**0.5:
+        sys.exit(f"equilibrium.py: {n} spheres at a volume fraction of {phi} overlap on their lattice; 4 m^3 spheres do not")
     x, state, step = lattice(n) * edge, ctypes.c_uint64(seed * 2654435761 + 88172645463325252), 1.0
 
     def sweep(times):
@@ -49,6 +56,12 @@ def hard_spheres(n, phi, sets, seed, melt=5000, between=400):
     for _ in range(sets):
         sweep(between)
         yield x.copy(), edge
+
+
+def write_data(path, x, edge):
+    """Data file for LAMMPS, atom_style sphere: spheres of diameter 2 in a periodic cube that fix deform can shear"""
+    path.write_text(f"spheres\n\n{len(x)} atoms\n1 atom types\n\n" + "".join(f"0 {edge:.17g} {c}lo {c}hi\n" for c in "xyz") +
+                    "0 0 0 xy xz yz\n\nAtoms\n\n" + "".join(f"{i + 1} 1 2.0 1.0 {a:.17g} {b:.17g} {c:.17g}\n" for i, (a, b, c) in enumerate(x.tolist())))
 
 
 def pressure(phi):

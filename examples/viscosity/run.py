@@ -15,7 +15,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from equilibrium import hard_spheres  # noqa: E402
+from equilibrium import hard_spheres, write_data  # noqa: E402
 from in_lammps import InLammps  # noqa: E402
 from runs import np, plt, dumped, finished, need, options, read_table, save, values  # noqa: E402
 
@@ -87,11 +87,6 @@ def morris_boulay(phi, most=0.68):
 def zarraga(phi):
     """Experiments: Zarraga, Hill & Leighton, J. Rheol. 44, 185 (2000)"""
     return np.exp(-2.34 * phi) / (1 - phi / 0.62)**3
-
-
-def write_data(path, x, edge):
-    path.write_text(f"spheres\n\n{len(x)} atoms\n1 atom types\n\n" + "".join(f"0 {edge:.17g} {c}lo {c}hi\n" for c in "xyz") +
-                    "0 0 0 xy xz yz\n\nAtoms\n\n" + "".join(f"{i + 1} 1 2.0 1.0 {a:.17g} {b:.17g} {c:.17g}\n" for i, (a, b, c) in enumerate(x.tolist())))
 
 
 def sheared(out, tag, phi, n, **variables):

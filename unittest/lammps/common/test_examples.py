@@ -14,8 +14,8 @@ EXAMPLES = pathlib.Path(__file__).resolve().parents[3] / "examples"
 QUICK = ["clump_resistance", "dense_settling", "first_look", "fixed_bed", "landing", "notebook", "python_clump", "rolling", "slit_bead",
          "squeeze", "vans_drag", "vans_fluid", "vans_fluidised", "wall_shear"]
 # by their option --quick
-BRIEF = ["active", "cfd_coupling", "fibres", "hele_shaw", "magnetic", "roller_layer", "settling_layer", "shapes", "ship", "swimmers",
-         "tumbling", "vans_sorting"]
+BRIEF = ["active", "cfd_coupling", "fibres", "hele_shaw", "magnetic", "rheology", "roller_layer", "settling_layer", "shapes", "ship",
+         "swimmers", "tumbling", "vans_sorting"]
 
 
 # how a warning about a command of LAMMPS beside ours begins (common/neighbours.h)

@@ -25,7 +25,7 @@ HOWTOS = {
     "sph": {"c_kinetic": 0.5},
     "stream": {"v_surface": 0.04, "f_stream[4]": 0.6, "f_stream[8]": 0.35},
     "waves": {"v_surface": 0.05, "f_water[4]": 0.6, "f_water[8]": 0.35},
-    "rheology": {"f_mean[1]": 0.05, "f_mean[2]": 0.2, "f_mean[3]": 0.2},
+    "rheology": {"f_mean[1]": 0.05, "f_mean[2]": 0.5, "f_mean[3]": 0.5, "f_mean[4]": 0.2},
     "suspension": {"v_down": 0.04, "f_move[1]": 0.25},
     "speed": {},
     "shapes": {},
