@@ -371,38 +371,6 @@ INLINE void gather(const real *rows, int columns, const int j[LANES], vec r[4])
   transpose(r);
 }
 
-/* Columns 0 ... 7 of rows of eight */
-INLINE void gather_eight(const real *rows, const int j[LANES], vec r[8])
-{
-#if defined(SD_SINGLE) && LANES >= 8
-  /* row k beside row k + 4: each half has four columns of four rows */
-  for (int k = 0; k < 8; k++) {
-    const int first = LANES == 16 ? k + k / 4 * 4 : k;
-    const __m256 row = _mm256_loadu_ps(rows + 8 * (long) j[first]);
-#if LANES == 16
-    r[k] = _mm512_insertf32x8(_mm512_castps256_ps512(row), _mm256_loadu_ps(rows + 8 * (long) j[first + 4]), 1);
-#else
-    r[k] = row;
-#endif
-  }
-  transpose(r);
-  transpose(r + 4);
-  for (int c = 0; c < 4; c++) {
-    const vec a = r[c], b = r[4 + c];
-#if LANES == 16
-    r[c] = _mm512_shuffle_f32x4(a, b, 0x88);
-    r[4 + c] = _mm512_shuffle_f32x4(a, b, 0xdd);
-#else
-    r[c] = _mm256_permute2f128_ps(a, b, 0x20);
-    r[4 + c] = _mm256_permute2f128_ps(a, b, 0x31);
-#endif
-  }
-#else
-  gather(rows, 8, j, r);
-  gather(rows + 4, 8, j, r + 4);
-#endif
-}
-
 /* Rows j[0 .. LANES-1] += column[0..3]. One after the other: a row may be there more than once. */
 INLINE void add_to_rows(real *rows, int columns, const int j[LANES], vec column[4])
 {
@@ -428,16 +396,19 @@ INLINE void gather(const real *rows, int columns, const int j[LANES], vec r[4])
 #endif
 }
 
-INLINE void gather_eight(const real *rows, const int j[LANES], vec r[8])
-{
-  gather(rows, 8, j, r);
-  gather(rows + 4, 8, j, r + 4);
-}
-
 INLINE void add_to_rows(real *rows, int columns, const int j[LANES], vec column[4])
 {
   for (int k = 0; k < LANES; k++)
     for (int c = 0; c < 4; c++) rows[columns * (long) j[k] + c] += LANE(column[c], k);
+}
+#endif
+
+/* Columns 0 ... 7 of rows of eight */
+#ifndef GATHERS_EIGHT
+INLINE void gather_eight(const real *rows, const int j[LANES], vec r[8])
+{
+  gather(rows, 8, j, r);
+  gather(rows + 4, 8, j, r + 4);
 }
 #endif
 

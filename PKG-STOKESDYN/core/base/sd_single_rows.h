@@ -60,4 +60,35 @@ INLINE void transpose(vec r[4])
 #endif
 }
 
+#ifdef WIDE
+/* Rows of eight floats are half a vector, or a whole one: each is loaded at once. With row k beside row
+ * k + 4 each 256 bits then have four columns of four rows in one part, the four others in the other. */
+#define GATHERS_EIGHT
+INLINE void gather_eight(const real *rows, const int j[LANES], vec r[8])
+{
+  for (int k = 0; k < 8; k++) {
+#if LANES == 16
+    const int *at = j + k + k / 4 * 4;
+    const __m256 low = _mm256_loadu_ps(rows + 8 * (long) at[0]);
+    const __m256 high = _mm256_loadu_ps(rows + 8 * (long) at[4]);
+    r[k] = _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
+#else
+    r[k] = load_any(rows + 8 * (long) j[k]);
+#endif
+  }
+  transpose(r);
+  transpose(r + 4);
+  for (int c = 0; c < 4; c++) {
+    const vec a = r[c], b = r[4 + c];
+#if LANES == 16
+    r[c] = _mm512_shuffle_f32x4(a, b, 0x88);
+    r[4 + c] = _mm512_shuffle_f32x4(a, b, 0xdd);
+#else
+    r[c] = _mm256_permute2f128_ps(a, b, 0x20);
+    r[4 + c] = _mm256_permute2f128_ps(a, b, 0x31);
+#endif
+  }
+}
+#endif
+
 #endif

@@ -112,10 +112,12 @@ static sd_status me_place(void *state, const sd_mobility_scene *s)
 static sd_status me_near_part(ewald *e, const double *F, double *sums)
 {
   sd_rank_spheres *here = &e->here;
-  const sd_status status = sd_rank_spheres_refresh(here, &e->world, F);
-  if (status != SD_OK) return status;
-  sd_ewald_pairs_apply(&e->pairs, here->n, F, here->ghosts, sums);
-  return e->ewald.box.periodic ? sd_world_sum(&e->world, sums, 9) : SD_OK;
+  const int wanted = e->ewald.box.periodic || e->ewald.single;
+  sd_status status = sd_rank_spheres_refresh(here, &e->world, F);
+  if (status == SD_OK)
+    status = sd_ewald_pairs_load(&e->pairs, here->n, F, here->ghosts, &e->world, wanted ? sums : NULL);
+  if (status == SD_OK) sd_ewald_pairs_apply(&e->pairs);
+  return status;
 }
 
 /* u = all of it; rows of what waves do, NULL: without them */
@@ -135,7 +137,7 @@ static void clear(const ewald *e, double *u)
 static sd_status me_apply(void *state, const double *F, double *u)
 {
   ewald *e = state;
-  double sums[9];
+  double sums[SD_EWALD_SUMS];
   if (!(e->ewald.count > 0.0)) {
     clear(e, u);
     return SD_OK;
@@ -160,7 +162,7 @@ static int divides(const void *state)
 static sd_status apply_rest(void *state, const double *F, double *u)
 {
   ewald *e = state;
-  double sums[9];
+  double sums[SD_EWALD_SUMS];
   const sd_status status = me_near_part(e, F, sums);
   if (status == SD_OK) me_take(e, F, NULL, sums, u);
   return status;

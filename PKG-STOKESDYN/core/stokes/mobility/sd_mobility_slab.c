@@ -164,15 +164,16 @@ static sd_status slab_apply(void *state, const double *F, double *u)
 {
   slab *s = state;
   sd_rank_spheres *here = &s->here;
-  double sums[6], unused[9];
+  double sums[6];
   if (!(s->slab.ewald.count > 0.0)) {
     memset(u, 0, 3 * sizeof(double) * (size_t) s->here.n);
     return SD_OK;
   }
   sd_status status = slab_sums_of(s, F, sums);
   if (status == SD_OK) status = sd_rank_spheres_refresh(here, &s->world, F);
+  if (status == SD_OK) status = sd_ewald_pairs_load(&s->pairs, here->n, F, here->ghosts, &s->world, NULL);
   if (status != SD_OK) return status;
-  sd_ewald_pairs_apply(&s->pairs, here->n, F, here->ghosts, unused);
+  sd_ewald_pairs_apply(&s->pairs);
   void *rows = sd_ewald_pairs_rows(&s->pairs);
   status = sd_ewald_waves_apply(&s->waves, rows);
   if (status != SD_OK) return status;

@@ -93,8 +93,9 @@ NOT_INLINE void grand_overlap(vec r2, vec ai, vec aj, grand *out)
   out->cji = where(swap, c_large, c_small);
 }
 
-/* Of spheres of one radius, without a branch: those that overlap have with the lens and the cube of above
- *   c = (1/2 - 3 R/(16 a))/a^3,  k = (1 - 27 R/(32 a) + 5 R^3/(64 a^3))/a^3,  e = (9/32 - 3 R^2/(64 a^2))/(a^4 R) */
+/* Of spheres of one radius, without a branch: those that overlap have
+ *   c = (1/2 - 3 R/(16 a))/a^3,   k = (1 - 27 R/(32 a) + 5 R^3/(64 a^3))/a^3,
+ *   e = (9/32 - 3 R^2/(64 a^2))/(a^4 R) */
 INLINE void grand_alike(vec r2, const alike *a, grand *b)
 {
   const vec y = inverse_root(larger(r2, all((real) 1e-30))), y2 = y * y, y3 = y * y2, R = r2 * y;

@@ -122,6 +122,26 @@ static void a_huge_box(void **state)
   same_digits(&few, 0);
 }
 
+/* Forces that no float holds are taken times a power of two; those that floats hold keep their digits. */
+static void forces_of_any_size(void **state)
+{
+  (void) state;
+  const scene s = cloud(13, MOST, 0.3, 1.0);
+  for (int width = 3; width <= 6; width += 3) {
+    const double power[5] = {-300, -45, 9, 45, 300};
+    double F[6 * MOST], G[6 * MOST], u[6 * MOST], v[6 * MOST];
+    forces(&s, width, 3, F);
+    product(&s, width, 1e-3, 1, F, u);
+    for (int k = 0; k < 5; k++) {
+      const double size = pow(10.0, power[k]);
+      for (int i = 0; i < width * s.n; i++) G[i] = size * F[i];
+      product(&s, width, 1e-3, 1, G, v);
+      for (int i = 0; i < width * s.n; i++) v[i] /= size;
+      assert_true(difference(&s, width, F, v, u) < 1e-6);
+    }
+  }
+}
+
 /* F' M F'' = F'' M F', to the rounding of floats: conjugate gradients go on until far below any tolerance that has them. */
 static void products_are_reciprocal(void **state)
 {
@@ -166,6 +186,7 @@ int main(void)
       cmocka_unit_test(one_sphere_and_two_at_one_point),
       cmocka_unit_test(far_from_the_origin),
       cmocka_unit_test(a_huge_box),
+      cmocka_unit_test(forces_of_any_size),
       cmocka_unit_test(products_are_reciprocal),
       cmocka_unit_test(the_rule),
   };

@@ -1,5 +1,5 @@
-/* A grid of vectors over all ranks, of doubles or of floats, and its Fourier transform: three real fields forth, a
- * multiplication at each wave vector, three fields back.
+/* A grid of vectors over all ranks, of doubles or of floats, and its Fourier transform: three real fields
+ * forth, a multiplication at each wave vector, three fields back.
  *
  * Each rank has a brick, the grid points that its own spheres reach, three numbers per point,
  * wherever that is; bricks overlap and may hang over the faces of a periodic box. Ranks stand in
@@ -81,7 +81,8 @@ typedef struct {
   sd_piece *out, *in;
   int outs, ins;
   size_t out_room, in_room;
-  /* doubles to and from each rank, as which numbers travel: of pieces, of the turn in rows, of that in columns; 6 [ranks] */
+  /* doubles to and from each rank, as which numbers travel: of pieces, of the turn in rows, of that in
+   * columns; 6 [ranks] */
   int *counts;
   /* messages: what is in one goes to the other */
   double *message[2];
@@ -93,7 +94,8 @@ typedef struct {
  * these the product with the height is added to what comes of the first three. */
 typedef void sd_grid_multiply(void *ctx, int y, void *const *plane);
 
-/* Rows, columns and plans; bytes: of a double, or of a float. SD_OK; SD_ENOMEMORY, also for turns of more numbers than an int counts. */
+/* Rows, columns and plans; bytes: of a double, or of a float. SD_OK; SD_ENOMEMORY, also for turns of more
+ * numbers than an int counts. */
 sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, size_t bytes,
                          const sd_world *world);
 

@@ -18,6 +18,7 @@ void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
   p->full = (int) (SD_FULL * sizeof(double) / p->bytes);
   p->ewald = *e;
   p->width = width;
+  p->unit = 1.0;
   p->degree = sd_near_degree(sd_radial_fit(e, width, p->coefficient[0]));
   sd_radial(e, 0.0, p->origin);
 }
@@ -177,10 +178,34 @@ sd_near_part sd_ewald_pairs_part(const sd_ewald_pairs *p)
   return k;
 }
 
-void sd_ewald_pairs_apply(sd_ewald_pairs *p, int n, const double *F, const double *ghosts, double *sums)
+/* For forces whose sizes have this sum, so that all are at most 1; where floats hold them anyway, 1, which
+ * leaves their digits alone. */
+static double ep_unit(double sizes)
+{
+  enum { HELD = 60 };
+  if (!(sizes > 0.0 && sizes < INFINITY)) return 1.0;
+  const int power = ilogb(sizes);
+  return abs(power) <= HELD ? 1.0 : ldexp(1.0, power < -1022 ? 1022 : -power);
+}
+
+sd_status sd_ewald_pairs_load(sd_ewald_pairs *p, int n, const double *F, const double *ghosts,
+                              const sd_world *world, double *sums)
+{
+  double own[SD_EWALD_SUMS];
+  p->unit = 1.0;
+  p->numbers->load(p, n, F, ghosts, own);
+  if (!sums) return SD_OK;
+  memcpy(sums, own, sizeof(own));
+  const sd_status status = sd_world_sum(world, sums, SD_EWALD_SUMS);
+  if (status != SD_OK || p->bytes == sizeof(double)) return status;
+  p->unit = ep_unit(sums[SD_EWALD_SIZES]);
+  if (p->unit != 1.0) p->numbers->load(p, n, F, ghosts, own);
+  return SD_OK;
+}
+
+void sd_ewald_pairs_apply(sd_ewald_pairs *p)
 {
   const sd_near_part k = sd_ewald_pairs_part(p);
-  p->numbers->load(p, n, F, ghosts, sums);
   memset(p->u, 0, p->bytes * numbers_of_sum(p) * ((size_t) p->rows + 1));
   p->kernels->near_part(&k);
 }

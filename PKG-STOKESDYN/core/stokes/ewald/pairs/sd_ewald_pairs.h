@@ -10,6 +10,7 @@
 #include "sd_ewald_groups.h"
 #include "sd_ewald_internal.h"
 #include "sd_status.h"
+#include "sd_world.h"
 
 SD_BEGIN_C
 
@@ -24,6 +25,8 @@ typedef struct sd_ewald_pairs {
   sd_ewald ewald;
   int width, degree;
   double coefficient[SD_RADIALS][SD_RADIAL_TERMS], origin[SD_RADIALS], scale;
+  /* forces in rows are times this: 1, or a power of two where floats would not hold them */
+  double unit;
   sd_spheres spheres;
   /* of the spheres with radius, ours and ghosts, in order of cells: their number, [rows] which */
   int rows, *sphere;
@@ -55,12 +58,20 @@ void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
 sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, const sd_groups *groups, int n,
                                int n_all);
 
-/* A product, in three steps. The first sums what is near, of F [width n] of ours and ghosts
- * [width (n_all - n)]; sums [9], out: of w F, b w F and w T of ours, in order of targets. */
-void sd_ewald_pairs_apply(sd_ewald_pairs *p, int n, const double *F, const double *ghosts, double *sums);
+/* Sums over spheres: of w F [3], b w F [3], w T [3], and of the sizes of all these numbers */
+enum { SD_EWALD_SIZES = 9, SD_EWALD_SUMS };
 
-/* Rows [width] for each target, w F, which may become what waves do to it: in memory that lasts until the next
- * product */
+/* A product, in four steps. The first takes F [width n] of ours and ghosts [width (n_all - n)], on all
+ * ranks together; sums [SD_EWALD_SUMS], out, of all ranks; NULL, of doubles alone: not wanted. SD_OK or
+ * what the sum over ranks said. */
+sd_status sd_ewald_pairs_load(sd_ewald_pairs *p, int n, const double *F, const double *ghosts,
+                              const sd_world *world, double *sums);
+
+/* What is near */
+void sd_ewald_pairs_apply(sd_ewald_pairs *p);
+
+/* Rows [width] for each target, unit w F, which may become what waves do to it: in memory that lasts
+ * until the next product */
 void *sd_ewald_pairs_rows(sd_ewald_pairs *p);
 
 /* u [width n] = w (what is near; rows of velocities, NULL: none; and what is beyond the range of a periodic

@@ -46,7 +46,7 @@ static inline void load_of_width(int m, const sd_ewald_pairs *p, int n, const do
   real *row = p->row, *turn = p->torque_row;
   const int *sphere = p->sphere;
   const double scale = p->scale, length = 1.0 / scale;
-  double sum[9] = {0.0};
+  double sum[SD_EWALD_SUMS] = {0.0};
   for (long k = 0; k < p->rows; k++) {
     const long i = sphere[k];
     real *to = row + 8 * k;
@@ -54,10 +54,11 @@ static inline void load_of_width(int m, const sd_ewald_pairs *p, int n, const do
     const double b = p->equal || i >= n ? 0.0 : sd_ewald_b(&p->ewald, to[3] * length);
     for (int d = 0; d < m; d++) {
       const double f = w * from[d];
-      if (d < 3) to[4 + d] = (real) f;
-      else turn[4 * k + d - 3] = (real) (scale * f);
+      if (d < 3) to[4 + d] = (real) (p->unit * f);
+      else turn[4 * k + d - 3] = (real) (p->unit * scale * f);
       if (i >= n) continue;
       sum[d < 3 ? d : d + 3] += f;
+      sum[SD_EWALD_SIZES] += fabs(d < 3 ? f : scale * f);
       if (d < 3) sum[3 + d] += b * f;
     }
   }
@@ -96,18 +97,18 @@ static inline void take_of_width(int m, const sd_ewald_pairs *p, const double *F
   const real *row = p->row, *near = p->u;
   const int step = m == 6 ? 8 : 4;
   const double scale = p->scale, length = 1.0 / scale, alike = self_of(p, 0.0), turned = 0.25 * p->origin[SD_I1];
-  const double over_V = 1.0 / sd_ewald_volume(&p->ewald.box), none[9] = {0.0};
+  const double over_V = 1.0 / sd_ewald_volume(&p->ewald.box), none[SD_EWALD_SUMS] = {0.0};
   const double *C = sums ? tail : none, *S = sums ? sums : none;
   for (long i = 0; i < p->n; i++) {
     const long k = p->target[i], j = p->sphere[k];
-    const double w = row[8 * k + 7], unit = w * scale / (8.0 * SD_PI);
+    const double w = row[8 * k + 7], unit = w * scale / (8.0 * SD_PI) / p->unit, wave = w / p->unit;
     const double b = p->equal ? 0.0 : sd_ewald_b(&p->ewald, row[8 * k + 3] * length);
     const double self = p->equal ? alike : self_of(p, b);
     for (int d = 0; d < m; d++) {
       const double sum = d < 3 ? unit * near[step * k + d] : unit * scale * near[step * k + d + 1];
       const double far = d < 3 ? (C[0] - b * C[1]) * S[d] - (C[1] - b * C[2]) * S[3 + d] : 0.25 * C[1] * S[3 + d];
       double v = sum - w * w * (d < 3 ? self : turned) * F[m * j + d];
-      if (waves) v += w * waves[m * i + d];
+      if (waves) v += wave * waves[m * i + d];
       u[m * j + d] = v + w * over_V * far;
     }
   }

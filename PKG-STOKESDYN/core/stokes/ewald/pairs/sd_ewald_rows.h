@@ -11,7 +11,7 @@
 struct sd_ewald_rows {
   /* where the spheres stand, their radii, and w in the last number of a row */
   void (*stand)(sd_ewald_pairs *p);
-  /* w F into the rows, and its sums; the rest as in sd_ewald_pairs.h */
+  /* unit w F into the rows, and sums of w F over this rank; the rest as in sd_ewald_pairs.h */
   void (*load)(const sd_ewald_pairs *p, int n, const double *F, const double *ghosts, double *sums);
   void (*of_targets)(const sd_ewald_pairs *p, void *waves);
   void (*take)(const sd_ewald_pairs *p, const double *F, const void *waves, const double *tail,

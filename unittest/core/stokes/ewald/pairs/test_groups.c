@@ -44,8 +44,8 @@ static void near_part(const cloud *c, const sd_groups *groups, const struct sd_e
   sd_ewald_pairs_create(&p, &how, kernels, 3);
   for (int again = 0; again < 2; again++) /* a second place() finds what the first has left */
     assert_int_equal(sd_ewald_pairs_place(&p, &spheres, groups, N, N_ALL), SD_OK);
-  double sums[9];
-  sd_ewald_pairs_apply(&p, N, c->F, c->F + 3 * N, sums);
+  assert_int_equal(sd_ewald_pairs_load(&p, N, c->F, c->F + 3 * N, NULL, NULL), SD_OK);
+  sd_ewald_pairs_apply(&p);
   sd_ewald_pairs_take(&p, N, c->F, NULL, NULL, NULL, u);
   sd_ewald_pairs_free(&p);
 }
