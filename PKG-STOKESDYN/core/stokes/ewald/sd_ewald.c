@@ -9,53 +9,11 @@
 
 static const double TIGHTEST = 1e-13, LOOSEST = 1e-1;
 
-/* Six digits: ranks whose sums differ in the last bits round to the same number, but for the rare
- * one that lies on the border; the caller hands out sums that are equal anyway. */
-static double six_digits(double value)
+double sd_ewald_six_digits(double value)
 {
   if (!(value > 0.0)) return 0.0;
   const double unit = pow(10.0, floor(log10(value)) - 5.0);
   return rint(value / unit) * unit;
-}
-
-int sd_ewald_transformable(double at_least)
-{
-  for (int n = (int) ceil(at_least);; n++) {
-    int m = n;
-    for (int p = 2; p < 8; p++)
-      while (m % p == 0) m /= p;
-    if (m == 1) return n;
-  }
-}
-
-/* Length of edge d of the box: a grid spans the edges, not the widths */
-static double edge_length(const sd_ewald_box *b, int d)
-{
-  if (d == 0) return b->edge[0];
-  if (d == 1) return hypot(b->edge[1], b->tilt[0]);
-  return hypot(b->edge[2], hypot(b->tilt[1], b->tilt[2]));
-}
-
-void sd_ewald_reciprocal(const sd_ewald_box *b, double k[3][3])
-{
-  const double lx = b->edge[0], ly = b->edge[1], lz = b->edge[2];
-  const double xy = b->tilt[0], xz = b->tilt[1], yz = b->tilt[2], unit = 2.0 * SD_PI;
-  const double rows[3][3] = {{unit / lx, -unit * xy / (lx * ly),
-                              unit * (xy * yz - ly * xz) / (lx * ly * lz)},
-                             {0.0, unit / ly, -unit * yz / (ly * lz)},
-                             {0.0, 0.0, unit / lz}};
-  memcpy(k, rows, sizeof(rows));
-}
-
-/* The smallest distance between opposite faces */
-static double narrowest(const sd_ewald_box *b)
-{
-  const double lx = b->edge[0], ly = b->edge[1], lz = b->edge[2];
-  const double xy = b->tilt[0], xz = b->tilt[1], yz = b->tilt[2], V = sd_ewald_volume(b);
-  const double yz_face = sqrt(ly * ly * lz * lz + xy * xy * lz * lz +
-                              (xy * yz - ly * xz) * (xy * yz - ly * xz));
-  const double xz_face = lx * hypot(lz, yz);
-  return fmin(lz, fmin(V / yz_face, V / xz_face));
 }
 
 static int sound(const sd_ewald_box *b, const sd_ewald_class *s, double tolerance)
@@ -98,7 +56,7 @@ typedef struct {
 
 static splitting splitting_for(fall how, const sd_ewald_class *s, int width, double most)
 {
-  const double rms = six_digits(sqrt(s->squares / s->count));
+  const double rms = sd_ewald_six_digits(sqrt(s->squares / s->count));
   const int equal = fabs(rms / s->largest - 1.0) < 1e-5;
   return (splitting){.fall = how, .spheres = *s, .width = width, .equal = equal,
                      .slopes = !equal || width == 6, .a_ref = equal ? s->largest : rms, .most = most};
@@ -115,7 +73,7 @@ static double natural_range(const sd_ewald_box *box, const splitting *by, double
   const double many = 86.0 * fmax(1.0, more) * (box->periodic ? 1.0 : 2.5);
   const double range = cbrt(3.0 * many * sd_ewald_volume(box) / (4.0 * SD_PI * by->spheres.count));
   if (by->farthest > 0.0) return fmin(by->times * range, by->farthest);
-  if (box->periodic) return fmin(range, 0.97 * narrowest(box));
+  if (box->periodic) return fmin(range, 0.97 * sd_ewald_narrowest(box));
   return fmin(range, hypot(box->edge[0], hypot(box->edge[1], box->edge[2])));
 }
 
@@ -204,14 +162,12 @@ static void split(sd_ewald *e, const splitting *by, double *y)
   e->spacing = by->fall == BAND ? e->range / band_spacings(by, t) : gaussian_spacing(e->xi, *y);
 }
 
-/* Spacing at most h. An open box has room for the windows of spheres at its faces; the grid around it
- * is twice as large. */
-static sd_status lay_grid(const sd_ewald_box *box, double h, int points, double *spacing, int *grid)
+sd_status sd_ewald_lay_grid(const sd_ewald_box *box, double h, int points, double *spacing, int *grid)
 {
   double all = 1.0;
   *spacing = h;
   for (int d = 0; d < 3; d++) {
-    const double cells = edge_length(box, d) / h;
+    const double cells = sd_ewald_edge_length(box, d) / h;
     if (!(cells < 1e6)) return SD_ENOMEMORY;
     if (box->periodic)
       grid[d] = 2 * sd_ewald_transformable(0.5 * fmax(cells, points + 2));
@@ -235,7 +191,7 @@ static void start(sd_ewald *e, const sd_ewald_box *box, double count, double tol
 static void end_at_band(sd_ewald *e, const splitting *by, double y)
 {
   double h = 0.0;
-  for (int d = 0; d < 3; d++) h = fmax(h, edge_length(&e->box, d) / e->grid[d]);
+  for (int d = 0; d < 3; d++) h = fmax(h, sd_ewald_edge_length(&e->box, d) / e->grid[d]);
   e->range = fmax(fmin(1.0, h / e->spacing) * e->range, least_range(e, by, y));
   e->reach = e->range;
   e->xi = y / e->range;
@@ -248,7 +204,7 @@ static sd_status one_level(sd_ewald *e, fall how, const sd_ewald_class *s, int w
   const splitting by = splitting_for(how, s, width, most);
   double y;
   split(e, &by, &y);
-  const sd_status status = lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
+  const sd_status status = sd_ewald_lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
   if (status == SD_OK && how == BAND) end_at_band(e, &by, y);
   return status;
 }
@@ -278,19 +234,10 @@ sd_status sd_ewald_gaussian_at(const sd_ewald_box *box, const sd_ewald_class *s,
   out->range = out->reach = y / out->xi;
   out->points = window_points(t);
   out->beta = 2.42 * out->points;
-  return lay_grid(box, gaussian_spacing(out->xi, y), out->points, &out->spacing, out->grid);
+  return sd_ewald_lay_grid(box, gaussian_spacing(out->xi, y), out->points, &out->spacing, out->grid);
 }
 
-void sd_ewald_add_class(sd_ewald_class *sum, const sd_ewald_class *s)
-{
-  sum->count += s->count;
-  sum->squares += s->squares;
-  sum->fourths += s->fourths;
-  sum->largest = fmax(sum->largest, s->largest);
-}
-
-/* Everything but the splitting; *some: are there spheres to split for? */
-static sd_status ew_prepare(const sd_ewald_box *box, const sd_ewald_class *all, double tolerance,
+sd_status sd_ewald_prepare(const sd_ewald_box *box, const sd_ewald_class *all, double tolerance,
                          sd_ewald *out, int *some)
 {
   const sd_ewald_box own = *box;
@@ -316,7 +263,7 @@ sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, 
                           double tolerance, sd_ewald *out)
 {
   int some;
-  const sd_status status = ew_prepare(box, &sizes->all, tolerance, out, &some);
+  const sd_status status = sd_ewald_prepare(box, &sizes->all, tolerance, out, &some);
   if (!some) return status;
   const sd_status chosen = one_level(out, fall_for(out), &sizes->all, width, LARGEST);
   out->single = floats_do(out, &sizes->all);
@@ -327,7 +274,7 @@ sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes
                                    double tolerance, double bound, sd_ewald *out)
 {
   int some;
-  const sd_status status = ew_prepare(box, &sizes->all, tolerance, out, &some);
+  const sd_status status = sd_ewald_prepare(box, &sizes->all, tolerance, out, &some);
   if (!some) return status;
   out->positive = bound;
   return one_level(out, fall_for(out), &sizes->all, width, bound);
@@ -343,7 +290,7 @@ sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
                                   const sd_ewald_sizes *sizes, double tolerance, sd_ewald *out)
 {
   int some;
-  sd_status status = ew_prepare(box, &sizes->all, tolerance, out, &some);
+  sd_status status = sd_ewald_prepare(box, &sizes->all, tolerance, out, &some);
   if (!some) return status;
   const double asked = out->tolerance;
   out->tolerance = fmax(TIGHTEST, AT_WALL * asked);
@@ -367,11 +314,11 @@ static sd_status level_in_slab(sd_ewald *e, splitting *by, double *y)
   split(e, by, &y_of_fall);
   if (e->range < (1.0 - 1e-9) * y_of_fall * by->a_ref / 0.8) {
     by->slopes = 1;
-    by->a_ref = six_digits(0.8 * e->range / y_of_fall);
+    by->a_ref = sd_ewald_six_digits(0.8 * e->range / y_of_fall);
     split(e, by, &y_of_fall);
   }
   *y = sqrt(log(1.0 / tightened(by, e->tolerance, e->xi * y_of_fall)));
-  const sd_status status = lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
+  const sd_status status = sd_ewald_lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
   if (status == SD_OK && by->fall == BAND) end_at_band(e, by, y_of_fall);
   return status;
 }
@@ -382,7 +329,7 @@ static sd_status lay_planes(sd_ewald *e, int across, double span)
 {
   double h = 0.0, all = 1.0;
   for (int d = 0; d < 3; d++)
-    if (d != across) h = fmax(h, edge_length(&e->box, d) / e->grid[d]);
+    if (d != across) h = fmax(h, sd_ewald_edge_length(&e->box, d) / e->grid[d]);
   const double cells = (span + fmax(e->range, (e->points + 2) * h)) / h;
   if (!(cells < 1e6)) return SD_ENOMEMORY;
   e->grid[across] = 2 * sd_ewald_transformable(0.5 * cells);
@@ -437,7 +384,7 @@ sd_status sd_ewald_choose_in_slab(const sd_ewald_box *box, int across, double sp
   tall.periodic = 1;
   tall.edge[across] = span + 2.0 * sizes->all.largest;
   if (!(tall.edge[across] > 0.0)) tall.edge[across] = 1.0; /* no spheres */
-  sd_status status = ew_prepare(&tall, &sizes->all, tolerance, out, &some);
+  sd_status status = sd_ewald_prepare(&tall, &sizes->all, tolerance, out, &some);
   if (!some) return status;
   splitting by = splitting_for(fall_for(out), &sizes->all, 3, LARGEST);
   by.farthest = WIDEST * fmin(tall.edge[(across + 1) % 3], tall.edge[(across + 2) % 3]);
@@ -458,108 +405,4 @@ sd_status sd_ewald_choose_in_slab(const sd_ewald_box *box, int across, double sp
     memcpy(out, &one, sizeof(one));
   }
   return status;
-}
-
-/* Of a splitting at points the reference radius, and the rms of a^2 - a_ref^2 where forces are as large
- * as radii; 0 if all are equal. The sixth moment is no more than the fourth times the largest a^2. */
-static double spread_of(const sd_ewald_class *s, double *ref)
-{
-  const double a2 = s->squares / s->count, a4 = s->fourths / s->count;
-  const double rms = six_digits(sqrt(a2)), largest = s->largest;
-  const int equal = !(fabs(rms - largest) > 1e-5 * largest);
-  *ref = equal ? largest : rms;
-  return equal ? 0.0 : six_digits(sqrt((largest * largest - 2.0 * a2) * a4 / a2 + a2 * a2));
-}
-
-/* With H of sd_radial.h the error at points, over the rms of F/(6 pi a), is near 10^-D of
- *   6 pi a sqrt(n R) A,   A^2 = 1 + (0.7 K^2 (rms of a^2 - a_ref^2))^2 + (K a)^2 with torques,
- * for the range R = (D - 1/2) h, the band K = 0.95 pi/h and windows of 1.06 D + 0.6 points, h the
- * spacing, n spheres a volume. Found by minimising what is left of near spheres beyond R and what windows
- * mistake, which are alike then. A is what the short waves of unlike spheres and of torques add; their
- * windows are differentiated and have 1.15 D + 0.6 points. */
-static double digits_at_points(const sd_ewald *e, double a, double spread, int width)
-{
-  const double K = e->band, n = e->count / sd_ewald_volume(&e->box);
-  const double unit = fmax(1.0, 6.0 * SD_PI * a * sqrt(n * e->range));
-  const double more = 1.0 + pow(0.7 * K * K * spread, 2.0) + (width == 6 ? K * K * a * a : 0.0);
-  const double digits = log10(unit * sqrt(more) / (0.75 * e->tolerance));
-  return fmax(2.5, fmin(digits, 16.0));
-}
-
-sd_status sd_ewald_choose_at_points(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
-                                    double points, double tolerance, sd_ewald *out)
-{
-  const sd_ewald_class *all = &sizes->all;
-  int some;
-  sd_status status = ew_prepare(box, all, tolerance, out, &some);
-  if (status != SD_OK) return status;
-  double spread = spread_of(all, &out->a_ref), digits = 5.0, h = 0.0;
-  out->count = all->count;
-  out->largest = all->largest;
-  for (int k = 0; k < 6; k++) {
-    /* Near pairs and transforms cost about the same where the range holds so many of as many places as
-     * there would be in a product of sqrt(n points) spheres. */
-    const double many = 9.0 * pow(digits - 0.5, 1.5) / sqrt(all->count * points);
-    out->range = fmax(cbrt(3.0 / (4.0 * SD_PI) * many * sd_ewald_volume(box)), 2.0 * all->largest);
-    h = out->range / (digits - 0.5);
-    out->band = 0.95 * SD_PI / h;
-    digits = digits_at_points(out, out->a_ref, spread, width);
-  }
-  const int slopes = spread > 0.0 || width == 6;
-  out->points = (int) ceil((slopes ? 1.15 : 1.06) * digits + 0.6);
-  out->beta = (slopes ? 2.42 : 2.25) * out->points;
-  status = lay_grid(box, h, out->points, &out->spacing, out->grid);
-  if (status != SD_OK) return status;
-  /* Numbers of grid points are few: what the next of them is finer than asked for shortens the range. */
-  h = 0.0;
-  for (int d = 0; d < 3; d++) h = fmax(h, edge_length(box, d) / out->grid[d]);
-  out->band = 0.95 * SD_PI / h;
-  out->range = fmax((digits - 0.5) * h, 2.0 * all->largest);
-  out->xi = sqrt(0.5 * out->band / out->range); /* that of long waves */
-  out->reach = out->range;
-  return SD_OK;
-}
-
-/* Of spheres up to the radius `largest`, which octave is one of radius a > 0? */
-static int octave_of(double largest, double a)
-{
-  int k = 0;
-  while (k + 1 < SD_EWALD_OCTAVES && a < ldexp(largest, -k - 1)) k++;
-  return k;
-}
-
-void sd_ewald_count(sd_ewald_sizes *s, double a)
-{
-  const double a2 = a * a;
-  const sd_ewald_class one = {1.0, a2, a2 * a2, a};
-  sd_ewald_add_class(&s->all, &one);
-  sd_ewald_add_class(s->octave + octave_of(s->all.largest, a), &one);
-}
-
-int sd_ewald_box_around(sd_ewald_box *box, int still, const double *lo, const double *hi,
-                        double largest)
-{
-  int holds = !box->periodic && box->edge[0] > 0.0;
-  double spare[3];
-  for (int d = 0; d < 3; d++) {
-    const double from = d == still ? box->origin[d] : lo[d], edge = box->edge[d];
-    spare[d] = fmax(0.05 * (hi[d] - lo[d]), largest);
-    holds = holds && lo[d] >= from && hi[d] <= from + edge &&
-            edge <= 1.5 * (hi[d] - lo[d] + 2.0 * spare[d]);
-  }
-  if (!holds) *box = (sd_ewald_box){0};
-  for (int d = 0; d < 3; d++) {
-    if (!holds) box->edge[d] = hi[d] - lo[d] + 2.0 * spare[d];
-    if (!holds || d != still) box->origin[d] = 0.5 * (lo[d] + hi[d] - box->edge[d]);
-  }
-  return !holds;
-}
-
-int sd_ewald_same_tables(const sd_ewald *made, const sd_ewald *wanted)
-{
-  sd_ewald there = *made;
-  for (int d = 0; d < 3 && !made->box.periodic; d++)
-    if (!made->images.wall.sign || made->images.wall.axis != d)
-      there.box.origin[d] = wanted->box.origin[d];
-  return !memcmp(&there, wanted, sizeof(there));
 }

@@ -1,4 +1,4 @@
-/* Parts of the rule of sd_ewald.h that a sum of two levels is made of. */
+/* Parts of the rule of sd_ewald.h that a sum of two levels and the flow at points are made of. */
 #ifndef SD_EWALD_RULE_INTERNAL_H
 #define SD_EWALD_RULE_INTERNAL_H
 
@@ -13,6 +13,24 @@ sd_status sd_ewald_gaussian(const sd_ewald_box *box, const sd_ewald_class *s, in
  * largest that overlap would be beyond the range. */
 sd_status sd_ewald_gaussian_at(const sd_ewald_box *box, const sd_ewald_class *s, int width,
                                double times, double tolerance, sd_ewald *out);
+
+/* Everything but the splitting, of a box and spheres that may not be sound; *some: are there spheres to
+ * split for? SD_OK or SD_ENOTFINITE */
+sd_status sd_ewald_prepare(const sd_ewald_box *box, const sd_ewald_class *all, double tolerance,
+                           sd_ewald *out, int *some);
+
+/* A grid whose spacing is at most h; an open box has room for the windows of spheres at its faces, and the
+ * grid around it is twice as large. SD_OK or SD_ENOMEMORY */
+sd_status sd_ewald_lay_grid(const sd_ewald_box *box, double h, int points, double *spacing, int *grid);
+
+/* Length of edge d of the box, since a grid spans the edges and not the widths; and the smallest distance
+ * between opposite faces */
+double sd_ewald_edge_length(const sd_ewald_box *b, int d);
+double sd_ewald_narrowest(const sd_ewald_box *b);
+
+/* Rounded, so that ranks whose sums differ in the last bits have the same number, but for the rare one that
+ * lies on the border; the caller hands out sums that are equal anyway. */
+double sd_ewald_six_digits(double value);
 
 void sd_ewald_add_class(sd_ewald_class *sum, const sd_ewald_class *s);
 
