@@ -36,8 +36,9 @@ bool EndOfRun::still_stands(int groupbit) const
   return step == now.step && velocities == now.velocities;
 }
 
-void EndOfRun::write(NamedState &state) const
+void EndOfRun::write(int groupbit, NamedState &state)
 {
+  if (update->whichflag == 1) record(groupbit);
   state.put("step", step);
   state.put_bits("velocities", velocities);
 }

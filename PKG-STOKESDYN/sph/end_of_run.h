@@ -20,7 +20,8 @@ class EndOfRun : protected LAMMPS_NS::Pointers {
   /* on all ranks together */
   void record(int groupbit);
   bool still_stands(int groupbit) const;
-  void write(NamedState &) const;
+  /* In mid-run, or after a run, there is a state that a run can go on from; before any there is none. */
+  void write(int groupbit, NamedState &);
   void read(const NamedState &);
 
  private:

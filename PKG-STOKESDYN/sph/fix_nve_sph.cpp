@@ -86,9 +86,7 @@ void FixNveSph::post_run()
 
 void FixNveSph::write_state(NamedState &state)
 {
-  // In mid-run, or after a run, there is a state that a run can go on from; before any there is none.
-  if (update->whichflag == 1) end.record(groupbit);
-  end.write(state);
+  end.write(groupbit, state);
 }
 
 void FixNveSph::read_state(const NamedState &state)

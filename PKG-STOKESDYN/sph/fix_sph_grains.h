@@ -25,10 +25,6 @@ class FixSphGrains : public SphFix {
   void post_force(int) override;
   void post_run() override;
   double compute_vector(int) override;
-  int pack_forward_comm(int, int *, double *, int, int *) override;
-  void unpack_forward_comm(int, int, double *) override;
-  int pack_reverse_comm(int, int, double *) override;
-  void unpack_reverse_comm(int, int *, double *) override;
 
   // --- for the pair style; arrays of particles are of this rank and its ghosts -------------------
   /* phi of the water where particles are now; in the first setup of the life of the fix water
@@ -91,12 +87,6 @@ class FixSphGrains : public SphFix {
   void stresses(std::vector<double> &F);
   void drags(const std::vector<double> &F, std::vector<double> &D);
   void give_back(const std::vector<double> &D);
-
-  // communication of one array at a time
-  double *comm_array = nullptr;
-  int comm_columns = 0;
-  void forward(double *array, int columns);
-  void reverse(double *array, int columns);
 };
 
 }    // namespace StokesDyn

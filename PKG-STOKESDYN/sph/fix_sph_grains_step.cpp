@@ -2,7 +2,6 @@
  * stresses and drag; rows of atoms, of points and of grains. */
 #include "fix_sph_grains.h"
 
-#include "lammps_compat.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
 
@@ -171,8 +170,7 @@ void FixSphGrains::post_run()
 
 void FixSphGrains::write_state(NamedState &state)
 {
-  if (update->whichflag == 1) end.record(groupbit);
-  end.write(state);
+  end.write(groupbit, state);
 }
 
 void FixSphGrains::read_state(const NamedState &state)
@@ -324,45 +322,4 @@ std::vector<double> FixSphGrains::mean_of(const std::vector<double> &of_atoms, i
 double FixSphGrains::compute_vector(int k)
 {
   return k < 3 ? sum_of_all(world, total[k]) : largest_of_all(world, largest);
-}
-
-// --- communication -------------------------------------------------------------------------------
-
-void FixSphGrains::forward(double *array, int columns)
-{
-  comm_array = array;
-  comm_columns = columns;
-  Compat::forward_comm(comm, this);
-}
-
-void FixSphGrains::reverse(double *array, int columns)
-{
-  comm_array = array;
-  comm_columns = columns;
-  Compat::reverse_comm(comm, this);
-}
-
-int FixSphGrains::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/, int * /*pbc*/)
-{
-  for (int k = 0; k < n; k++)
-    buf = std::copy_n(comm_array + (size_t) list[k] * comm_columns, comm_columns, buf);
-  return n * comm_columns;
-}
-
-void FixSphGrains::unpack_forward_comm(int n, int first_atom, double *buf)
-{
-  std::copy_n(buf, (size_t) n * comm_columns, comm_array + (size_t) first_atom * comm_columns);
-}
-
-int FixSphGrains::pack_reverse_comm(int n, int first_atom, double *buf)
-{
-  std::copy_n(comm_array + (size_t) first_atom * comm_columns, (size_t) n * comm_columns, buf);
-  return n * comm_columns;
-}
-
-void FixSphGrains::unpack_reverse_comm(int n, int *list, double *buf)
-{
-  for (int k = 0; k < n; k++)
-    for (int c = 0; c < comm_columns; c++)
-      comm_array[(size_t) list[k] * comm_columns + c] += *buf++;
 }

@@ -3,7 +3,6 @@
 #include "fix_wall_sph.h"
 #include "fixes.h"
 #include "keywords.h"
-#include "lammps_compat.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
 #include "sd_constants.h"
@@ -383,25 +382,4 @@ double FixSphTension::memory_usage()
   for (const auto *rows : {&x4, &v4, &at_surface, &contact, &whole, &at_wall, &sums, &beside, &turns})
     bytes += (double) rows->capacity() * sizeof(double);
   return bytes + (double) skin.capacity() * (sizeof(int) + sizeof(double));    // and its weights
-}
-
-// --- communication -------------------------------------------------------------------------------
-
-void FixSphTension::forward(double *array, int columns)
-{
-  comm_array = array;
-  comm_columns = columns;
-  Compat::forward_comm(comm, this);
-}
-
-int FixSphTension::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/, int * /*pbc*/)
-{
-  for (int k = 0; k < n; k++)
-    buf = std::copy_n(comm_array + (size_t) list[k] * comm_columns, comm_columns, buf);
-  return n * comm_columns;
-}
-
-void FixSphTension::unpack_forward_comm(int n, int first, double *buf)
-{
-  std::copy_n(buf, (size_t) n * comm_columns, comm_array + (size_t) first * comm_columns);
 }

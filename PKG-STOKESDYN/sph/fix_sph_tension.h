@@ -29,8 +29,6 @@ class FixSphTension : public SphFix {
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
-  int pack_forward_comm(int, int *, double *, int, int *) override;
-  void unpack_forward_comm(int, int, double *) override;
 
   /* Of the latest force, rows of particles of this rank: [3 n] the force, [n] the area; are there so many? */
   bool has_rows(int n) const { return (int) area.size() == n + 1; }
@@ -83,11 +81,6 @@ class FixSphTension : public SphFix {
   void keep_momentum();
   void show();
   double whole_area() const;
-
-  // communication of one array at a time
-  double *comm_array = nullptr;
-  int comm_columns = 0;
-  void forward(double *array, int columns);
 };
 
 }    // namespace StokesDyn

@@ -59,9 +59,22 @@ class SphFix : public RowsFix {
   SphFix(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override { return 0; }
   void init() override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  int pack_reverse_comm(int, int, double *) override;
+  void unpack_reverse_comm(int, int *, double *) override;
 
  protected:
   PairSph *pair = nullptr;
+
+  /* array [columns] for each atom: those of owned atoms to their ghosts; sums of ghosts to their owners.
+   * At most comm_forward and comm_reverse columns, which the constructor of a fix says. */
+  void forward(double *array, int columns);
+  void reverse(double *array, int columns);
+
+ private:
+  double *comm_array = nullptr;
+  int comm_columns = 0;
 };
 
 /* A fix whose per-atom vector is made in the pair style: between runs it has the numbers of the
