@@ -102,8 +102,8 @@ class PairSph : public LAMMPS_NS::Pair {
   /* With shift or delta: the neighbours of each particle of this rank in the latest force, those nearer
    * than 2 h and some more. */
   sd_sph_both neighbours_of_each() { return near.both(atom->nlocal); }
-  /* For fix sph/tension: is the support of particle i, of this rank or a ghost, whole? In the middle of the latest
-   * step. */
+  /* For fix sph/tension: is the support of particle i, of this rank or a ghost, whole? In the middle of the
+   * latest step. */
   bool is_whole(int i) const { return order[(pliant ? SD_SPH_MOST_COLUMNS : 8) * (size_t) i + 7] > 0.0; }
   /* [3 n] the velocity that particles are moved with beside their own; nullptr: none. */
   const double *shift() const;

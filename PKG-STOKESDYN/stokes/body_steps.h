@@ -22,8 +22,8 @@ struct Places {
 
 class BodySteps : protected LAMMPS_NS::Pointers {
  public:
-  /* held: do not go; pinned: turn only. Columns from `quaternion` on of `rows`: by which the clump of a sphere
-   * has turned since the fix was given */
+  /* held: do not go; pinned: turn only. Columns from `quaternion` on of `rows`: by which the clump of a
+   * sphere has turned since the fix was given */
   BodySteps(LAMMPS_NS::LAMMPS *lmp, const KeywordGroup &held, const KeywordGroup &pinned,
             Directions &directions, AtomArray &rows, int quaternion) :
       Pointers(lmp), held(held), pinned(pinned), directions(directions), rows(rows), quaternion(quaternion)

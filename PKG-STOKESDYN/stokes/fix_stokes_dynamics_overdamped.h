@@ -43,8 +43,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void final_integrate() override;
   void end_of_step() override;
 
-  /* For compute stokes_dynamics/stress: does the last solve have noise, and what did the same noise alone make
-   * where the step begins, as Hydrodynamics::stress? nullptr: nobody asked for it in time */
+  /* For compute stokes_dynamics/stress: does the last solve have noise, and what did the same noise alone
+   * make where the step begins, as Hydrodynamics::stress? nullptr: nobody asked for it in time */
   bool has_noise_in_solve() const { return noise.on() && scheme == MIDPOINT; }
   const std::vector<double> *stress_of_noise() const;
   /* kT times the bodies of this rank that noise moves */

@@ -34,8 +34,9 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   {
   }
 
-  /* The rows of the scene where they stand now, and copies around them, in the fluid of this step (nullptr: it
-   * and the box rest), on all ranks. noisy: random forces will be drawn. Error: radii that are too different. */
+  /* The rows of the scene where they stand now, and copies around them, in the fluid of this step (nullptr:
+   * it and the box rest), on all ranks. noisy: random forces will be drawn. Error: radii that are too
+   * different. */
   void place(Scene &scene, const Ambient *fluid, bool noisy = false);
   /* Since then */
   sd_lubrication *matrix() { return &near; }

@@ -84,8 +84,8 @@ class Solve : protected LAMMPS_NS::Pointers {
   void difference(double sign);
   const std::vector<double> &wanderers() const { return wandering; }
   double part() const { return kT / (2.0 * reach); }
-  /* The bodies have been assembled for the solve: u and F with what was drawn and what is left of the drift; or
-   * what was drawn alone, in a fluid at rest and without loads; or nothing, and nothing was drawn. */
+  /* The bodies have been assembled for the solve: u and F with what was drawn and what is left of the drift;
+   * or what was drawn alone, in a fluid at rest and without loads; or nothing, and nothing was drawn. */
   void push();
   void push_alone();
   void forget_noise() { pushed.clear(); }

@@ -10,8 +10,8 @@
 
 SD_BEGIN_C
 
-/* parent [all]: each particle, also those that are only neighbours, becomes part of the tree of its drop. Of f
- * nothing but surface, x4 and wall is read. cells: created for `all` points or more. */
+/* parent [all]: each particle, also those that are only neighbours, becomes part of the tree of its drop. Of
+ * f nothing but surface, x4 and wall is read. cells: created for `all` points or more. */
 void sd_sph_find_drops(const sd_sph_film *f, sd_cells *cells, int *parent);
 
 /* One round of the names of drops on several ranks: the smallest name [all] of the particles of a tree here

@@ -117,13 +117,14 @@ void sd_sph_film_sharpen(const sd_sph_film *f, const double *kappa, const double
 void sd_sph_film_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin, double *rows,
                          const double *ks, double *k);
 
-/* F [3 n] of k, and area [n]: the share of each particle in that of the surface of the fluid, 2 V |G| where the
- * surface reaches, without that on walls. friction: mu_s. */
+/* F [3 n] of k, and area [n]: the share of each particle in that of the surface of the fluid, 2 V |G| where
+ * the surface reaches, without that on walls. friction: mu_s. */
 typedef struct {
   double sigma, friction;
 } sd_sph_tension;
 void sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const double *whole,
-                           const double *surface, const double *rows, const double *k, double *F, double *area);
+                           const double *surface, const double *rows, const double *k, double *F,
+                           double *area);
 
 /* Time step up to which waves of the length 2 h on the surface are resolved, 0.25 sqrt(rho h^3 / (2 pi
  * sigma)); mu_s; and the Ohnesorge number mu / sqrt(rho sigma R) of a drop. */

@@ -73,8 +73,8 @@ double sd_sph_wall_particle(const sd_sph_wall *wall, const double s[8], const do
  *   G = 0.07 P (1.3 dx/h)^3                                        cubicspline
  * with the measured values at h = 2 dx (2.5 dx: 0.005 P) and 1.3 dx, and an incompressible solid holds a
  * cylinder with 2 pi G a length of it (measured: 0.07 P, h = 2 dx), a sphere of the radius R with 6 pi G R.
- * With pliant shift a fifth of it (measured: 0.012 P): of rows that are sheared nothing is left, but where they
- * are torn at the body, the sums are not those of rows. 0 with correction. spacing: dx. */
+ * With pliant shift a fifth of it (measured: 0.012 P): of rows that are sheared nothing is left, but where
+ * they are torn at the body, the sums are not those of rows. 0 with correction. spacing: dx. */
 double sd_sph_arrangement(const sd_sph_model *model, double h, double spacing, double P, double V);
 
 SD_END_C
