@@ -1,6 +1,6 @@
 #include "body_scene.h"
 
-#include "boundary.h"
+#include "boundary_checks.h"
 #include "keywords.h"
 #include "settings.h"
 

@@ -1,7 +1,6 @@
 #include "boundary.h"
 
 #include "keywords.h"
-#include "settings.h"
 
 #include <algorithm>
 
@@ -110,31 +109,6 @@ std::vector<std::string> Boundary::edges() const
     if (at_edge[w]) all.push_back(position);
   }
   return all;
-}
-
-// --- other keywords ------------------------------------------------------------------------------
-
-void Boundary::settle(const Keywords &in, StokesSettings &s) const
-{
-  in.require(!in.given("flow") || walls == 2,
-             "keyword flow requires two walls (wall zlo ... zhi ...): it says what drives the fluid "
-             "between them");
-  if (!walled()) return;
-  const bool torques = s.scene.rotation && !s.shells.on();
-  in.require(s.scene.tensor != SD_TENSOR_OSEEN,
-             "keyword wall is not available with tensor oseen: use tensor rpy");
-  in.require(s.scene.far_field != Scene::Settings::EWALD || !torques,
-             "keyword wall: far_field ewald has no images of torques in a wall: use multiblob 12 in "
-             "place of rotation yes, or far_field auto, which takes all pairs");
-  in.require(s.precondition != Preconditioner::WAVES,
-             "keyword wall: precondition waves is for periodic boxes: use precondition auto");
-  in.require(!s.rigid.apart(),
-             "keyword wall: with clumps_only yes rigid clumps have a resistance that is computed "
-             "once, without the wall: use cut_off_distance inf and multiblob 12");
-  in.require(s.rigid.shell == 1,
-             "keyword wall: a shell is computed once, without the wall: use multiblob 12 in its "
-             "place");
-  if (torques) s.scene.far_field = Scene::Settings::DIRECT;
 }
 
 }    // namespace StokesDyn

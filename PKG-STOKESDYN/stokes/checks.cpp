@@ -1,10 +1,10 @@
 #include "checks.h"
 
 #include "fixes.h"
-#include "hydrodynamics.h"
 #include "keywords.h"
 #include "neighbours_stokes.h"
 #include "ranks.h"
+#include "settings.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -138,14 +138,14 @@ static void refuse_pair_settings(const Voice &voice, const StokesSettings &s)
                "nothing resists the spin of a straight clump");
 }
 
-void refuse_inertia(const Voice &voice, const Hydrodynamics &hydro)
+void refuse_inertia(const Voice &voice, const StokesSettings &settings)
 {
   LAMMPS *lmp = voice.lmp;
   if (lmp->update->whichflag == 2)
     voice.fail("minimize cannot be used with it: motion without inertia has no minimiser");
   if (utils::strmatch(lmp->update->integrate_style, "^respa"))
     fail(lmp, voice.command + " does not support run_style respa");
-  refuse_pair_settings(voice, hydro.settings);
+  refuse_pair_settings(voice, settings);
   for (const Fix *fix : fixes_of(lmp, "stokes_dynamics"))
     voice.fail(name_of(fix) + " cannot apply or report a force in this run (apply yes or no): use the "
                "output of this fix");

@@ -7,7 +7,7 @@
 
 namespace StokesDyn {
 
-class Hydrodynamics;
+struct StokesSettings;
 
 /* The first call of BLAS in a process wants memory, and tries for ever where there is none. */
 void check_room_of_blas(const Voice &voice);
@@ -32,7 +32,7 @@ void refuse_close_oseen(const Voice &voice, const Scene &scene);
 // --- motion without inertia: errors, that name the other command, and limits of the time step ----
 
 /* The settings of the pair style, fix stokes_dynamics, the kind of run. On all ranks. */
-void refuse_inertia(const Voice &voice, const Hydrodynamics &hydro);
+void refuse_inertia(const Voice &voice, const StokesSettings &settings);
 
 /* Once a run, when something besides the pair style acts on the spheres: how long a step contacts
  * and bonds allow. A contact of stiffness k relaxes at the rate lambda k/(6 pi eta a), lambda up to

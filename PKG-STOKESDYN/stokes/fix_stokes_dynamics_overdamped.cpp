@@ -1,3 +1,4 @@
+#include "boundary_checks.h"
 #include "fix_stokes_dynamics_overdamped.h"
 
 #include "copy.h"
@@ -82,7 +83,7 @@ void FixStokesDynamicsOverdamped::init()
 {
   find_groups();
   directions.init(moved_bits != 0);
-  refuse_inertia(voice, hydrodynamics());
+  refuse_inertia(voice, hydrodynamics().settings);
   refuse_in_layer(voice, hydrodynamics().settings.scene.boundary,
                   held.bit ? "keyword held" : pinned.bit ? "keyword pin" : "", noise.on());
   look_at_neighbours();

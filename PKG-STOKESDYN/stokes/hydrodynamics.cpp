@@ -1,3 +1,4 @@
+#include "boundary_checks.h"
 #include "hydrodynamics.h"
 
 #include "callback.h"

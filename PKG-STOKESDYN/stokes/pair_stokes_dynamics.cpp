@@ -1,3 +1,4 @@
+#include "boundary_checks.h"
 #include "pair_stokes_dynamics.h"
 
 #include "fix_stokes_dynamics.h"

@@ -1,6 +1,7 @@
 /* The scene of Ewald sums: the box, how the sum is split, and whether that pays. */
 #include "scene.h"
 
+#include "boundary_checks.h"
 #include "keywords.h"
 
 #include "sd_ewald_cost.h"

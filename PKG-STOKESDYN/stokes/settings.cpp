@@ -1,5 +1,6 @@
 #include "settings.h"
 
+#include "boundary_checks.h"
 #include "keywords.h"
 
 #include "sd_multiblob_half.h"
@@ -21,7 +22,7 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   if (!in.given("cut_off_distance")) scene.cutoff = INFINITY;
   rigid.clumps_only = scene.clumps_only;
   check(in);
-  scene.boundary.settle(in, *this);
+  settle_walls(in, *this);
   if (!grid_file.empty()) {
     ambient.grid = FlowFile::read(Voice(lmp, COMMAND).of("keyword fluid_velocity"), grid_file);
     in.require(!ambient.grid_has_visc || ambient.grid->has_viscosity(),

@@ -1,3 +1,4 @@
+#include "boundary_checks.h"
 #include "time_step_guard.h"
 
 #include "callback.h"
