@@ -87,7 +87,9 @@ static inline void sd_vans_add_drag(const sd_vans_force_law *law, const sd_vans_
 
 #define SD_VANS_SMOOTH 0.32 /* of the laws of smooth walls */
 
-/* Series in s of the friction of the walls. Terms of ln(1 + s). */
+/* --- sd_vans_series.c: series in s of the friction of the walls ------------------------------- */
+
+/* Terms of ln(1 + s) */
 extern const double sd_vans_log_series[SD_VANS_FRICTION_TERMS];
 
 /* What the terms below n add to n q_n r_0 = n r_n - sum k q_k r_(n-k), the series q = ln r. */

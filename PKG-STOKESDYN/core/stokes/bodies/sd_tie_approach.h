@@ -26,7 +26,7 @@
 #ifndef SD_TIE_APPROACH_H
 #define SD_TIE_APPROACH_H
 
-#include "sd_tie.h"
+#include "sd_tied.h"
 
 /* Where A->tie->L stands now. On all ranks together. SD_OK; SD_ENOMEMORY; that of refresh. */
 sd_status sd_tie_approach_make(const sd_bodies *A);

@@ -15,7 +15,7 @@
 #ifndef SD_TIE_FACTOR_H
 #define SD_TIE_FACTOR_H
 
-#include "sd_tie.h"
+#include "sd_tied.h"
 
 /* Where A->tie->L stands. On all ranks together, which agree on failures. Status as of sd_tie_make. */
 sd_status sd_tie_factor(const sd_bodies *A);

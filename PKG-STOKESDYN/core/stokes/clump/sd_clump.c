@@ -19,33 +19,6 @@ static void clump_respond(const double *table, const double in[SD_CLUMP_COLUMNS]
     for (int p = 0; p < 6; p++) out[p] += table[6 * c + p] * in[c];
 }
 
-/* Rows and columns of E_xx E_yy E_zz E_yz E_xz E_xy */
-static const int row_of[6] = {0, 1, 2, 1, 0, 0}, column_of[6] = {0, 1, 2, 2, 2, 1};
-
-void sd_clump_unit_strain(int c, const double y[3], double v[3])
-{
-  for (int d = 0; d < 3; d++) v[d] = 0.0;
-  v[row_of[c]] = y[column_of[c]];
-  v[column_of[c]] = y[row_of[c]];
-}
-
-void sd_clump_split_gradient(const double R[9], const double G[9], double W[3], double E[6])
-{
-  double GR[9], S[9];
-  sd_product3(G, R, GR);
-  for (int q = 0; q < 3; q++) {
-    const double column[3] = {GR[q], GR[3 + q], GR[6 + q]};
-    double turned[3];
-    sd_multiply3t(R, column, turned);
-    for (int p = 0; p < 3; p++) S[3 * p + q] = turned[p];
-  }
-  for (int e = 0; e < 6; e++)
-    E[e] = 0.5 * (S[3 * row_of[e] + column_of[e]] + S[3 * column_of[e] + row_of[e]]);
-  W[0] = 0.5 * (G[7] - G[5]);
-  W[1] = 0.5 * (G[2] - G[6]);
-  W[2] = 0.5 * (G[3] - G[1]);
-}
-
 static double determinant(const double g[9])
 {
   double c[3];
@@ -66,13 +39,12 @@ static sd_status symmetrize(const sd_shape *s, double *table)
     const double *g = s->g + 9 * m, hand = determinant(g) < 0.0 ? -1.0 : 1.0;
     const double back_g[9] = {g[0], g[3], g[6], g[1], g[4], g[7], g[2], g[5], g[8]};
     for (int c = 0; c < SD_CLUMP_COLUMNS; c++) {
-      double in[SD_CLUMP_COLUMNS] = {0.0}, turned[SD_CLUMP_COLUMNS], E[9] = {0.0}, W[3];
+      double in[SD_CLUMP_COLUMNS] = {0.0}, turned[SD_CLUMP_COLUMNS], E[9], W[3];
       in[c] = 1.0;
       sd_multiply3(g, in, turned);
       sd_multiply3(g, in + 3, turned + 3);
       for (int d = 3; d < 6; d++) turned[d] *= hand;
-      for (int e = 0; e < 6; e++)
-        E[3 * row_of[e] + column_of[e]] = E[3 * column_of[e] + row_of[e]] = in[6 + e];
+      sd_clump_strain_matrix(in + 6, E);
       sd_clump_split_gradient(back_g, E, W, turned + 6);
       for (int k = 0; k < s->n; k++) {
         double out[6], back[6];

@@ -23,10 +23,10 @@
 #ifndef SD_CLUMP_H
 #define SD_CLUMP_H
 
+#include "sd_clump_options.h"
+#include "sd_clump_strain.h"
 #include "sd_shape.h"
 #include "sd_shell.h"
-
-#include <stddef.h>
 
 SD_BEGIN_C
 
@@ -54,43 +54,6 @@ typedef struct {
   double radius;
 } sd_clump;
 
-/* What a solve would need; nothing is allocated for it. Exposed points are not known yet: an upper
- * bound. */
-typedef struct {
-  long points;
-  /* bytes */
-  double dense, iterative;
-} sd_clump_need;
-
-/* A cache of shells by number of points, the caller's: start with {0}, free when no more clumps are
- * to come. */
-typedef struct {
-  int count;
-  sd_shell *shell;
-} sd_shells;
-void sd_shells_free(sd_shells *cache);
-
-typedef struct {
-  /* 1, or the wanted number of points a sphere; see sd_shell_size */
-  int shell;
-  /* for shell 1: torques and angular velocities of spheres take part */
-  int rotation;
-  /* bytes that a solve may use: dense if it fits, else iterative, else SD_ENOMEMORY before anything
-   * is allocated */
-  double memory;
-  /* of iterative solves */
-  double tolerance;
-  int max_iter;
-  /* before every product of an iterative solve: which solve, of how many (twelve for each
-   * orientation), products so far; NULL: none */
-  void (*progress)(void *ctx, int solve, int solves, int products);
-  void *progress_ctx;
-} sd_clump_options;
-#define SD_CLUMP_OPTIONS              \
-  {                                   \
-    1, 0, 2e9, 1e-8, 2000, NULL, NULL \
-  } /* shell, rotation, memory, tolerance, max_iter */
-
 sd_status sd_clump_needs(const sd_shape *shape, const sd_clump_options *options,
                          sd_clump_need *need);
 
@@ -110,11 +73,6 @@ void sd_clump_forces_rigid(const sd_clump *clump, const double R[9], double eta,
                            const double W[3], double *F, double *T);
 void sd_clump_forces(const sd_clump *clump, const double R[9], double eta, const double s0[3],
                      const double A[9], double *F, double *T);
-
-/* A gradient of the fluid velocity, G y = W x y + E y: W [3] in space, E_xx E_yy E_zz E_yz E_xz E_xy
- * in the axes of the shape in pose R; and v = E y for the unit number c of these. */
-void sd_clump_split_gradient(const double R[9], const double G[9], double W[3], double E[6]);
-void sd_clump_unit_strain(int c, const double y[3], double v[3]);
 
 /* 6x6 resistance about the point at d from the one that R is about. */
 void sd_resistance_shift(const double R[36], const double d[3], double out[36]);

@@ -2,7 +2,9 @@
 #ifndef SD_CLUMP_INTERNAL_H
 #define SD_CLUMP_INTERNAL_H
 
-#include "sd_clump.h"
+#include "sd_clump_options.h"
+#include "sd_shape.h"
+#include "sd_shell.h"
 
 enum { SD_CLUMP_COLUMNS = 12 }; /* unit slips: 3 velocities, 3 angular velocities, 6 strains */
 

@@ -1,5 +1,6 @@
 #include "sd_clump_internal.h"
 
+#include "sd_clump_strain.h"
 #include "sd_linear.h"
 #include "sd_product.h"
 #include "sd_solve.h"

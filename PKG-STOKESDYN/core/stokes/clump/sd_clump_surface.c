@@ -23,13 +23,6 @@ static sd_status get_shell(sd_shells *cache, int n, const sd_shell **shell)
   return status;
 }
 
-void sd_shells_free(sd_shells *cache)
-{
-  for (int i = 0; i < cache->count; i++) sd_shell_free(cache->shell + i);
-  free(cache->shell);
-  *cache = (sd_shells){0};
-}
-
 /* --- points of the surface -------------------------------------------------------------------- */
 
 void sd_surface_free(sd_surface *s)

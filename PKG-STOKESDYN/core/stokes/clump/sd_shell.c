@@ -350,3 +350,10 @@ void sd_shell_free(sd_shell *shell)
   free(shell->p);
   *shell = (sd_shell){0};
 }
+
+void sd_shells_free(sd_shells *cache)
+{
+  for (int i = 0; i < cache->count; i++) sd_shell_free(cache->shell + i);
+  free(cache->shell);
+  *cache = (sd_shells){0};
+}

@@ -48,5 +48,13 @@ int sd_shell_points(int n, double *p);
 sd_status sd_shell_create(int n, sd_shell *shell);
 void sd_shell_free(sd_shell *shell);
 
+/* A cache of shells by number of points, the caller's: start with {0}, free when no more clumps are
+ * to come. */
+typedef struct {
+  int count;
+  sd_shell *shell;
+} sd_shells;
+void sd_shells_free(sd_shells *cache);
+
 SD_END_C
 #endif

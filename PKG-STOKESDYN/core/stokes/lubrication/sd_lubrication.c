@@ -276,6 +276,26 @@ static sd_status resistance_of(const sd_lubrication *L, const sd_lubrication_sce
   return SD_OK;
 }
 
+/* Films: forces are L V - carried; the drift of pair k, R its film, goes into `carried`. */
+static void film_drift(sd_lubrication *L, long k, const sd_pair_resistance *R)
+{
+  const int i = L->pair[k][0], j = L->pair[k][1];
+  const double *d = L->link[k].d, *drift = L->work->close[k].drift;
+  const sd_lubrication_link B12 = block_of(R, 1, d), B22 = block_of(R, 2, d);
+  const double V[6] = {-drift[0], -drift[1], -drift[2], 0.0, 0.0, 0.0};
+  add_product(&B12, V, L->carried + 6 * (long) i);
+  if (j < L->n && j != i) add_product(&B22, V, L->carried + 6 * (long) j);
+}
+
+/* Keeps the film of a sphere with its own image for the stress; 0: out of memory. */
+static int film_remember(sd_lubrication *L, long k, const sd_pair_resistance *R)
+{
+  struct sd_lubrication_work *w = L->work;
+  if (!sd_extend(&w->image, sizeof(*w->image), (size_t) w->images + 1, &w->image_room)) return 0;
+  w->image[w->images++] = (own_image){k, block_of(R, 1, L->link[k].d)};
+  return 1;
+}
+
 static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long k)
 {
   const int i = L->pair[k][0], j = L->pair[k][1];
@@ -290,13 +310,13 @@ static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long
     L->work->whole[k] = (whole_pair){
         R, {link->d[0], link->d[1], link->d[2]}, 0.5 * (s->spheres.a[i] + s->spheres.a[c->at])};
   if (L->work->flows && i < L->n) add_carried(L, s, k, &R);
-  if (s->films && s->drift && i < L->n) sd_lubrication_drift(L, k, &R);
+  if (s->films && s->drift && i < L->n) film_drift(L, k, &R);
   if (i < L->n) sd_lubrication_add_block(&own, L->diagonal + 36 * (long) i);
   *link = block_of(&R, 1, link->d);
   if (j == i) { /* an image on either side: what their 12 and 21 have in UW and WU cancels */
     link->YB12 = link->YB21 = 0.0;
     sd_lubrication_add_block(link, L->diagonal + 36 * (long) i);
-    if (s->films && !sd_lubrication_remember(L, k, &R)) return SD_ENOMEMORY;
+    if (s->films && !film_remember(L, k, &R)) return SD_ENOMEMORY;
     *link = (sd_lubrication_link){.XA = 0.0};
   } else if (j < L->n) {
     own = block_of(&R, 2, link->d);
@@ -350,70 +370,6 @@ void sd_lubrication_add_block(const sd_lubrication_link *l, double B[36])
     T[r] -= l->YB12 * d[q];
     T[q] += l->YB12 * d[r];
   }
-}
-
-sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
-{
-  const sd_lubrication *L = ctx;
-  return sd_lubrication_apply_both(L, L->diagonal, NULL, V, out);
-}
-
-sd_status sd_lubrication_apply_both(const sd_lubrication *L, const double *diagonal, const double *c,
-                                    const double *V, double *out)
-{
-  const sd_status status = fetch(L, V);
-  if (status != SD_OK) return status;
-  for (long i = 0; i < L->n; i++)
-    for (int p = 0; p < 6; p++) {
-      double sum = 0.0;
-      for (int q = 0; q < 6; q++) sum += diagonal[36 * i + 6 * p + q] * V[6 * i + q];
-      out[6 * i + p] = sum;
-    }
-  for (long k = 0; k < L->count; k++) {
-    const int i = L->pair[k][0], j = L->pair[k][1];
-    sd_lubrication_link B12 = L->link[k];
-    if (c) B12.XA -= c[k];
-    add_product(&B12, motion_at(L, V, j), out + 6 * (long) i);
-    if (j >= L->n) continue;
-    const sd_lubrication_link B21 = exchanged(B12);
-    add_product(&B21, V + 6 * (long) i, out + 6 * (long) j);
-  }
-  return SD_OK;
-}
-
-void sd_lubrication_strain_power(const sd_lubrication *L, const double *V, double *out)
-{
-  for (long i = 0; i < L->n; i++) {
-    const double *strain = L->strain + 7 * i;
-    out[i] = strain[6];
-    for (int k = 0; k < 6; k++) out[i] -= strain[k] * V[6 * i + k];
-  }
-}
-
-/* Rayleigh's quotient v.L v / v.W v of v := W^-1 L v, again and again */
-sd_status sd_lubrication_rate(sd_lubrication *L, const double *W, double *v, double *work,
-                              double *rate)
-{
-  enum { STEPS = 30 };
-  const sd_world *world = &L->world;
-  *rate = 0.0;
-  for (int k = 0; k < STEPS; k++) {
-    sd_status status = sd_lubrication_apply(L, v, work);
-    double sums[3] = {0.0, 0.0, 0.0};
-    for (long j = 0; j < 6 * (long) L->n; j++) {
-      sums[0] += v[j] * work[j];
-      sums[1] += v[j] * W[j] * v[j];
-      sums[2] += work[j] * work[j] / W[j];
-    }
-    if (status == SD_OK && world->sum) status = world->sum(world->ctx, sums, 3);
-    if (status != SD_OK) return status;
-    if (!isfinite(sums[0]) || !isfinite(sums[2])) return SD_ENOTFINITE;
-    if (!(sums[2] > 0.0)) return SD_OK; /* nobody is near */
-    *rate = fmax(*rate, sums[0] / sums[1]);
-    const double scale = 1.0 / sqrt(sums[2]); /* v.W v = 1 */
-    for (long j = 0; j < 6 * (long) L->n; j++) v[j] = scale * work[j] / W[j];
-  }
-  return SD_OK;
 }
 
 void sd_lubrication_free(sd_lubrication *L)

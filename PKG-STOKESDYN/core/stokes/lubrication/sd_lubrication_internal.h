@@ -96,9 +96,4 @@ static inline sd_status fetch(const sd_lubrication *L, const double *V)
   return world->refresh && world->ranks > 1 ? world->refresh(world->ctx, V, L->others, 6) : SD_OK;
 }
 
-/* Films: forces are L V - carried; the drift of pair k, R its film, goes into `carried`. */
-void sd_lubrication_drift(sd_lubrication *L, long k, const sd_pair_resistance *R);
-/* Keeps the film of a sphere with its own image for the stress; 0: out of memory. */
-int sd_lubrication_remember(sd_lubrication *L, long k, const sd_pair_resistance *R);
-
 #endif

@@ -1,0 +1,46 @@
+/* What the files of a tie share (sd_tie.h): its arrays, and who is tied. */
+#ifndef SD_TIED_H
+#define SD_TIED_H
+
+#include "sd_block_cholesky.h"
+#include "sd_body.h"
+#include "sd_lubrication.h"
+
+SD_BEGIN_C
+
+/* Zero-initialise, set L, whose rows are the spheres; sd_tie_free in the end. */
+typedef struct sd_tie {
+  sd_lubrication *L;
+  /* products with L since sd_tie_make */
+  long products;
+  /* of the bodies of this rank and of `others`, those of other ranks that are near */
+  sd_block_cholesky factor;
+  int others;
+  /* [6 (bodies + others)] 1 over the roots of the diagonal of H_0; 0: nobody is near to this body,
+   * or this of its velocity is given */
+  double *scale;
+  /* [others] the copy, among the n_all - n of L, that stands for it */
+  int *copy;
+  /* X by pairs of L and those beyond, c; by spheres, L_ii and that of K^T X K together; what springs
+   * see of faces and do to them [2 9 spheres], [9 others] */
+  double *spring, *stiff, *face, *faces_there;
+  /* scratch: by bodies, by bodies and others, by spheres, by copies */
+  double *vectors, *all, *rows, *copies;
+  size_t most_scales, most_copies, most_springs, most_stiff, most_vectors, most_all, most_rows,
+      most_rows_there, most_faces, most_faces_there;
+} sd_tie;
+
+/* Is there an X? */
+static inline int sd_tie_has_springs(const sd_bodies *A)
+{
+  return A->tie->L->model && (!A->points.whole || A->faces);
+}
+/* Is V of body b that of sd_tie_solve? */
+static inline int sd_tie_binds(const sd_bodies *A, int b)
+{
+  const double *scale = A->tie->scale + 6 * (long) b; /* of a pinned one that of W alone is not 0 */
+  return scale[0] != 0.0 || scale[3] != 0.0;
+}
+
+SD_END_C
+#endif

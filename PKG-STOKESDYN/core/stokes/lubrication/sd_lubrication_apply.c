@@ -1,0 +1,111 @@
+/* What follows from films that stand: products, power, rate and stress. */
+#include "sd_lubrication_internal.h"
+
+#include <math.h>
+
+sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
+{
+  const sd_lubrication *L = ctx;
+  return sd_lubrication_apply_both(L, L->diagonal, NULL, V, out);
+}
+
+sd_status sd_lubrication_apply_both(const sd_lubrication *L, const double *diagonal, const double *c,
+                                    const double *V, double *out)
+{
+  const sd_status status = fetch(L, V);
+  if (status != SD_OK) return status;
+  for (long i = 0; i < L->n; i++)
+    for (int p = 0; p < 6; p++) {
+      double sum = 0.0;
+      for (int q = 0; q < 6; q++) sum += diagonal[36 * i + 6 * p + q] * V[6 * i + q];
+      out[6 * i + p] = sum;
+    }
+  for (long k = 0; k < L->count; k++) {
+    const int i = L->pair[k][0], j = L->pair[k][1];
+    sd_lubrication_link B12 = L->link[k];
+    if (c) B12.XA -= c[k];
+    add_product(&B12, motion_at(L, V, j), out + 6 * (long) i);
+    if (j >= L->n) continue;
+    const sd_lubrication_link B21 = exchanged(B12);
+    add_product(&B21, V + 6 * (long) i, out + 6 * (long) j);
+  }
+  return SD_OK;
+}
+
+void sd_lubrication_strain_power(const sd_lubrication *L, const double *V, double *out)
+{
+  for (long i = 0; i < L->n; i++) {
+    const double *strain = L->strain + 7 * i;
+    out[i] = strain[6];
+    for (int k = 0; k < 6; k++) out[i] -= strain[k] * V[6 * i + k];
+  }
+}
+
+/* Rayleigh's quotient v.L v / v.W v of v := W^-1 L v, again and again */
+sd_status sd_lubrication_rate(sd_lubrication *L, const double *W, double *v, double *work,
+                              double *rate)
+{
+  enum { STEPS = 30 };
+  const sd_world *world = &L->world;
+  *rate = 0.0;
+  for (int k = 0; k < STEPS; k++) {
+    sd_status status = sd_lubrication_apply(L, v, work);
+    double sums[3] = {0.0, 0.0, 0.0};
+    for (long j = 0; j < 6 * (long) L->n; j++) {
+      sums[0] += v[j] * work[j];
+      sums[1] += v[j] * W[j] * v[j];
+      sums[2] += work[j] * work[j] / W[j];
+    }
+    if (status == SD_OK && world->sum) status = world->sum(world->ctx, sums, 3);
+    if (status != SD_OK) return status;
+    if (!isfinite(sums[0]) || !isfinite(sums[2])) return SD_ENOTFINITE;
+    if (!(sums[2] > 0.0)) return SD_OK; /* nobody is near */
+    *rate = fmax(*rate, sums[0] / sums[1]);
+    const double scale = 1.0 / sqrt(sums[2]); /* v.W v = 1 */
+    for (long j = 0; j < 6 * (long) L->n; j++) v[j] = scale * work[j] / W[j];
+  }
+  return SD_OK;
+}
+
+/* Half of d F dev-symmetric times the distance, to sphere i and, if it is this rank's, j. F: of the
+ * first sphere on the fluid; what its own velocity does is what the second's does, turned round. */
+static void add_moment(const sd_lubrication *L, long k, const sd_lubrication_link *film,
+                       const double *Vi, const double *Vj, double *S)
+{
+  static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
+  const int i = L->pair[k][0], j = L->pair[k][1];
+  const double *d = film->d, half = 0.5 * L->work->close[k].distance;
+  double U[3], spin[3], turned[3], F[3];
+  for (int e = 0; e < 3; e++) {
+    U[e] = Vj[e] + L->work->close[k].drift[e] - Vi[e];
+    spin[e] = film->YB21 * Vj[3 + e] - film->YB12 * Vi[3 + e];
+  }
+  const double along = sd_dot(d, U);
+  sd_cross(d, spin, turned);
+  for (int e = 0; e < 3; e++)
+    F[e] = film->XA * along * d[e] + film->YA * (U[e] - along * d[e]) + turned[e];
+  const double trace = sd_dot(d, F) / 3.0;
+  for (int e = 0; e < 6; e++) {
+    const int p = row[e], q = column[e];
+    const double moment = half * (0.5 * (d[p] * F[q] + d[q] * F[p]) - (p == q ? trace : 0.0));
+    S[6 * (long) i + e] += moment;
+    if (j < L->n && j != i) S[6 * (long) j + e] += moment;
+  }
+}
+
+sd_status sd_lubrication_stress(const sd_lubrication *L, const double *V, double *S)
+{
+  const sd_status status = fetch(L, V);
+  if (status != SD_OK) return status;
+  for (long k = 0; k < L->count; k++) {
+    const int i = L->pair[k][0], j = L->pair[k][1];
+    if (j == i) continue;
+    add_moment(L, k, L->link + k, V + 6 * (long) i, motion_at(L, V, j), S);
+  }
+  for (long e = 0; e < L->work->images; e++) {
+    const own_image *image = L->work->image + e;
+    const double *Vi = V + 6 * (long) L->pair[image->k][0];
+    add_moment(L, image->k, &image->film, Vi, Vi, S);
+  }
+  return SD_OK;
+}
