@@ -68,6 +68,8 @@ void ComputeStokesDynamicsStress::init()
 void ComputeStokesDynamicsStress::find_moments()
 {
   Hydrodynamics &hydro = hydrodynamics();
+  if (update->setupflag)
+    for (FixStokesDynamicsOverdamped *mover : fixes_of<FixStokesDynamicsOverdamped>(lmp)) mover->set_up_early();
   if (!hydro.computed_in((double) update->ntimestep))
     voice.at_step().fail("the forces of this step have not been computed; use this compute in a "
                          "run");

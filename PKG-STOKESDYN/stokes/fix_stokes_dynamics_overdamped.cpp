@@ -81,6 +81,7 @@ int FixStokesDynamicsOverdamped::setmask()
 
 void FixStokesDynamicsOverdamped::init()
 {
+  first = WAIT;
   find_groups();
   directions.init(moved_bits != 0);
   refuse_inertia(voice, hydrodynamics().settings);
@@ -158,7 +159,24 @@ bool FixStokesDynamicsOverdamped::prepare(LAMMPS *lmp)
   return there;
 }
 
+void FixStokesDynamicsOverdamped::set_up_early()
+{
+  if (first != WAIT) return;
+  set_up();
+  first = EARLY;
+}
+
 void FixStokesDynamicsOverdamped::after_setup()
+{
+  if (first != EARLY)
+    set_up();
+  else if (!causes_stand(hydrodynamics()))
+    voice.at_step().fail("a fix took its first value of a stress before all forces of this step were known: "
+                         "define it after the fixes that add forces");
+  first = FOUND;
+}
+
+void FixStokesDynamicsOverdamped::set_up()
 {
   Hydrodynamics &hydro = hydrodynamics();
   hydro.begin();

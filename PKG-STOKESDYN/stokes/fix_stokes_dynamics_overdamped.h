@@ -38,6 +38,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   int setmask() override;
   void init() override;
   void after_setup();
+  /* The same before other fixes' setup, when one of those takes a value that follows from it */
+  void set_up_early();
   void initial_integrate(int) override;
   void post_integrate() override;
   void final_integrate() override;
@@ -107,6 +109,8 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   double velocity_change = 0.0;
   sd_growth growth = {};    // of error_figure() of all
   bool warned_growth = false, announced = false;
+  /* velocities of the first step of a run */
+  enum { WAIT, EARLY, FOUND } first = FOUND;
 
   double pressure_gradient(int d) const;
   bool restored() const override { return last.step >= 0; }
@@ -119,6 +123,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   bool causes_stand(const Hydrodynamics &) const;
   void forget_before_change(const double *causes);
   void set_step(double dt);
+  void set_up();
   void announce();
   const double *tracked(const ClumpShape &shape) const;
   void tracked_velocity(const ClumpPoses::Clump &clump, const ClumpShape &shape, double V[6]) const;

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from brownian import ETA, KT, TIGHT, end, in_pieces, script
-from system import Spheres, dump_lines
+from system import LammpsError, Spheres, dump_lines
 from test_brownian_bodies import CROOKED, SHARP, close_spheres, in_few_clumps
 from test_brownian_shear import DEFORM
 
@@ -225,6 +225,29 @@ def test_stress_of_a_run_in_pieces_is_that_of_the_run_in_one(tmp_path, way):
     scale = np.abs(whole[:, 6:]).max()
     for other in (two, again, end(tmp_path, make(ROWS + ["run 20"]), 2)):
         assert np.abs(other - whole)[:, 6:].max() < 1e-7 * scale
+
+
+IN_SETUP = ["fix pull all addforce 0.3 0 -1", "fix move all stokes_dynamics/overdamped temperature 0.8 5"]
+
+
+@pytest.mark.parametrize("variance", ["raw", "low"])
+@pytest.mark.parametrize("words", ["start 2", ""])
+def test_averages_take_the_value_of_the_first_step_too(simulation, tmp_path, variance, words):
+    """Where one value is asked for each time, LAMMPS takes the first in set-up, before the fixes that come later"""
+    sim = simulation(Spheres(THREE), f"{FILMS}", fix=False, dt=1e-3)
+    sim.commands(IN_SETUP[:1] + [line.format(variance) for line in SUM] + [f"fix out all ave/time 1 1 2 c_sum[4] {words} file {tmp_path}/values"] + IN_SETUP[1:] +
+                 ["thermo 2", "thermo_style custom step c_sum[4]", f"fix same all print 2 '$(step) $(c_sum[4]:%.8g)' file {tmp_path}/same"]).run(4).run(2)
+    values, same = np.loadtxt(tmp_path / "values"), np.loadtxt(tmp_path / "same")
+    assert list(values[:, 0]) == [0, 2, 4, 6] and np.abs(values[:, 1]).min() > 0
+    for step, value in same:
+        assert values[values[:, 0] == step, 1] == pytest.approx(value, rel=1e-5)
+
+
+def test_a_first_value_without_all_forces_is_an_error(simulation):
+    sim = simulation(Spheres(THREE), FILMS, fix=False, dt=1e-3)
+    sim.commands(IN_SETUP[1:] + [line.format("raw") for line in SUM] + ["fix out all ave/time 1 1 2 c_sum[4]"] + IN_SETUP[:1])
+    with pytest.raises(LammpsError, match="before all forces of this step were known: define it after the fixes that add forces"):
+        sim.run(2)
 
 
 def test_pressure_of_the_particles_is_ideal_and_virial(simulation):
