@@ -151,21 +151,32 @@ void refuse_inertia(const Voice &voice, const StokesSettings &settings)
                "output of this fix");
 }
 
-void announce_step_limit(const Voice &voice, bool euler, double smallest_drag)
+/* Of the contacts whose stiffness is known, the longest step; INFINITY: there are none */
+static double limit_of(const Contact &contact, double limit, double softer)
+{
+  const bool linear = !contact.style.empty() && !utils::strmatch(contact.style, "hertz");
+  const double along = linear && contact.k > 0.0 ? limit * softer / contact.k : INFINITY;
+  const bool rubs = linear && contact.friction > 0.0 && contact.across > 0.0;
+  return rubs ? std::min(along, limit / contact.across) : along;
+}
+
+void announce_step_limit(const Voice &voice, bool euler, double smallest_drag, double film_gap)
 {
   LAMMPS *lmp = voice.lmp;
   Force *force = lmp->force;
-  const double part = euler ? 0.78 : 0.39;
+  const double part = euler ? 0.78 : 0.39, limit = part * smallest_drag;
+  const double softer = film_gap > 0.0 ? std::max(1.0, 0.64 / film_gap) : 1.0;
   const Contact contact = contact_of(lmp);
   const bool walls = fix_like(lmp, "^wall/gran");
   const bool others = strcmp(force->pair_style, "stokes_dynamics") != 0 || force->bond || walls;
   if (!others) return;
-  const double limit = part * smallest_drag;
   voice.tell("contacts and bonds of stiffness k allow time steps up to " + text(part) +
-             " 6 pi eta a / k = " + text(limit) + " / k");
-  const bool linear = !contact.style.empty() && !utils::strmatch(contact.style, "hertz");
-  if (linear && contact.k > 0.0 && lmp->update->dt > limit / contact.k)
-    voice.warn("time step " + text(lmp->update->dt) + " is above " + text(limit / contact.k) +
+             " 6 pi eta a / k = " + text(limit) + " / k" +
+             (film_gap > 0.0 ? ", springs between surfaces that touch, with films between them, up to " +
+                               text(limit * softer) + " / k" : ""));
+  const double longest = limit_of(contact, limit, softer);
+  if (lmp->update->dt > longest)
+    voice.warn("time step " + text(lmp->update->dt) + " is above " + text(longest) +
                ", the longest that pair_style " + contact.style + " with k " + text(contact.k) +
                " allows in dense packings");
 }

@@ -37,9 +37,12 @@ void refuse_inertia(const Voice &voice, const StokesSettings &settings);
 /* Once a run, when something besides the pair style acts on the spheres: how long a step contacts
  * and bonds allow. A contact of stiffness k relaxes at the rate lambda k/(6 pi eta a), lambda up to
  * 2.6 in dense packings, and a scheme is stable while that times the step is below 1 (ab2) or 2
- * (euler). smallest_drag: 6 pi eta a */
-void announce_step_limit(const Voice &voice, bool euler,
-                         double smallest_drag);
+ * (euler). smallest_drag: 6 pi eta a
+ * Spheres in contact approach through a film of the smallest gap, xi radii, which resists by at
+ * least 6 pi eta a/(4 xi). So N^-1 > (6 pi eta a/(4 xi k)) K with springs K along lines of centres,
+ * and lambda is at most 4 xi, whatever the packing. film_gap: xi, 0: there are no films. Springs
+ * across have the limit without. */
+void announce_step_limit(const Voice &voice, bool euler, double smallest_drag, double film_gap);
 
 /* LAMMPS sorts its atoms into bins of half the cut-off, which is small where a style has none. In
  * an open box that is mostly empty the bins would take most of the memory, or be too many: then

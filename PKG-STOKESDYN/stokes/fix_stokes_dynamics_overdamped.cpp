@@ -205,7 +205,8 @@ void FixStokesDynamicsOverdamped::announce()
     least[1] = std::min(least[1], atom->radius[i]);
   }
   MPI_Allreduce(MPI_IN_PLACE, least, 2, MPI_DOUBLE, MPI_MIN, world);
-  announce_step_limit(voice, scheme == EULER, least[0]);
+  const auto &films = hydrodynamics().settings.lubrication;
+  announce_step_limit(voice, scheme == EULER, least[0], films.on ? films.gap : 0.0);
   if (noise.on()) noise.announce(hydrodynamics(), least[1], least[0]);
   announced = true;
 }

@@ -37,6 +37,7 @@ static bool read_contact(Pair *pair, Contact &contact)
   rewind(file.get());
   if (fread(settings, sizeof(double), 5, file.get()) != 5) return false;
   contact.k = settings[0];
+  contact.across = settings[1];
   contact.damping = std::max(settings[2], settings[3]);
   contact.friction = settings[4];
   return true;

@@ -27,11 +27,12 @@ enum StokesSort : unsigned { FREE = 1 << 0, HELD = 1 << 1 };
 
 extern const std::vector<Neighbour> stokes_neighbours;
 
-/* Stiffness and damping of a contact style of package GRANULAR, which tells nobody but a restart
- * file: k_n k_t gamma_n gamma_t friction. Without a style: there is none. */
+/* Stiffness along the line of centres and across, and damping, of a contact style of package
+ * GRANULAR, which tells nobody but a restart file: k_n k_t gamma_n gamma_t friction. Without a
+ * style: there is none. */
 struct Contact {
   std::string style;
-  double k = 0.0, damping = 0.0, friction = 0.0;
+  double k = 0.0, across = 0.0, damping = 0.0, friction = 0.0;
 };
 Contact contact_of(LAMMPS_NS::LAMMPS *lmp);
 

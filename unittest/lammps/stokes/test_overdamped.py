@@ -193,3 +193,20 @@ def test_contacts_allow_a_step_that_is_told(tmp_path):
     limit = 0.39 * P6
     assert f"contacts and bonds of stiffness k allow time steps up to 0.39 6 pi eta a / k = {limit:.6g} / k" in out.log
     assert f"time step 0.3 is above {limit / 50:.6g}" in out.log
+
+
+@pytest.mark.parametrize("part, friction, warned", [(0.9, 0.0, False), (1.1, 0.0, True), (0.1, 0.5, True)])
+def test_springs_that_films_slow_allow_longer_steps(tmp_path, part, friction, warned):
+    """A cluster of twelve about one: overlaps fade in steps up to the limit with films of a gap of xi, 0.64/xi times the one without. Springs across
+    (here 2/7 as stiff) have the limit without."""
+    ways = [(p, q, 0) for p in (1, -1) for q in (1, -1)]
+    x = 1.99 / 2**0.5 * np.array([(0, 0, 0)] + [np.roll(way, turn) for way in ways for turn in range(3)])
+    limit = 0.39 * P6 * 64
+    style = f"{ALL} rotation yes lubrication yes lubrication_gap 0.01"
+    lines = input_lines(Spheres(x), contacts(50.0, style, friction), os.path.join(str(tmp_path), "spheres.data"), fix=False, box=[(-19.0, 19.0)] * 3,
+                        dt=part * limit / 50, comm="comm_modify vel yes")
+    out = lmp(tmp_path, lines + [FIX, "thermo_style custom step f_move[8]", "thermo 12", "run 12"])
+    assert f"with films between them, up to {limit:.6g} / k" in " ".join(out.log.split())
+    assert ("is above" in out.log) == warned
+    gaps = [float(line.split()[1]) for line in out.log.splitlines() if line.split()[:1] in (["0"], ["12"]) and len(line.split()) == 2]
+    assert gaps[0] == pytest.approx(-0.01) and (warned or abs(gaps[1]) < 0.003)
