@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from brownian import A, BEYOND, ETA, KT, TIGHT, UNIT, check_pieces, check_ranks, noise
-from system import LammpsError, Spheres, dump_lines, read_dump
+from system import LammpsError, Spheres, dump_lines, input_lines, read_dump
 from test_brownian_bodies import SHARP, close_spheres, in_few_clumps
 from test_sheared_box import edges, up_to_images
 
@@ -247,3 +247,63 @@ def test_what_a_box_must_do_is_said(simulation, fluid, deform, scheme, message, 
     sim.commands(f"fix d all {deform} remap v")
     with pytest.raises(LammpsError, match=message):
         noise(sim, f"scheme {scheme}", kT).run(2)
+
+
+# --- in a plane, and radii that change ------------------------------------------------------------------------------------------
+
+PLANE_X = np.array([(0, 0, 0), (2.3, 0.4, 0), (0.9, 2.6, 0), (3.4, 2.9, 0), (-2.1, 1.2, 0)]) * A
+
+
+def in_sheared_plane(simulation, folder, words, fluid="formula", kT=KT, dt=0.02, shift=0.0, steps=20):
+    """u_x = 1.7 (y - shift). fluid "box": of one that is periodic and sheared, else by a formula in an open one"""
+    box = fluid == "box"
+    where = dict(boundary="p p p" if box else "f f p", box=[(-30.0, 30.0)] * 2 + [(-0.5, 0.5)], tilt=(0.0, 0.0, 0.0) if box else None)
+    flow = "box" if box else "v_ux v_zero v_zero" + (" fluid_vorticity 0 0 -1.7" if "inf" in words else "")
+    lines = input_lines(Spheres(PLANE_X + (0, shift, 0), A), f"visc {ETA} {words} fluid_velocity {flow}", str(folder / "data"), fix=False, dt=dt,
+                        comm=COMM if box else "", before_pair=f"variable ux atom 1.7*(y-({shift!r}))\nvariable zero atom 0", **where)
+    sim = simulation().commands(["dimension 2"] + lines)
+    if box:
+        sim.commands("fix d all deform 1 xy erate 1.7 remap v")
+    sim.commands("variable fx atom 3*cos(id)\nvariable fy atom 3*sin(2*id)\nfix pull all addforce v_fx v_fy 0")
+    noise(sim, kT=kT).run(steps)
+    assert (sim.x[:, 2] == 0).all() and ("inf" not in words or (sim.atom("omega")[:, :2] == 0).all())
+    return sim.x - (0, shift, 0), edges(sim)[0] if box else None
+
+
+def test_lone_spheres_in_a_plane_that_is_sheared_go_as_in_that_flow(simulation, tmp_path):
+    """Whether the box or a formula gives the flow, noise and all"""
+    (x, H), (other, _), (still, _) = (in_sheared_plane(simulation, tmp_path, "clumps_only yes", fluid, kT)
+                                      for fluid, kT in (("box", KT), ("formula", KT), ("box", 0.0)))
+    d = x - other    # the box flows with a stream beside that of the formula
+    assert np.abs(up_to_images(d - d[0], H)).max() < 1e-9
+    assert np.abs(up_to_images(x - still, H)).max() > 0.1
+
+
+@pytest.mark.parametrize("words", ["rotation yes lubrication yes", "multiblob 12 lubrication yes"])
+def test_spheres_in_a_plane_that_flows_stay_in_it(simulation, tmp_path, words):
+    """Where the flow rests does not matter, and where noise has faded, with its differences for the plane, the path is that without"""
+    words = f"cut_off_distance inf relative_tolerance 1e-10 max_iter 400 {words}"
+    make = lambda **how: in_sheared_plane(simulation, tmp_path, words, **how)[0]
+    x = make()
+    assert np.abs(make(shift=2.5) - x).max() < 1e-6 and np.abs(make(kT=0.0) - x).max() > 0.1
+    off = [np.abs(make(kT=FAINT, dt=0.4 / n, steps=n) - make(kT=0.0, dt=0.4 / n, steps=n)).max() for n in (20, 40)]
+    assert off[0] < 0.02 and off[1] < 0.6 * off[0]
+
+
+def test_radii_that_change_in_shear_are_those_of_each_step(simulation, tmp_path):
+    """By fix adapt in one run, or set by hand between runs of one step"""
+    shrinks = ["group some id 1 3 4 8"]
+
+    def make():
+        lines = input_lines(close_spheres(10, SIDE), f"cut_off_distance inf visc {ETA} far_field_tolerance 1e-6 {SHELLS} multiblob_most 12 fluid_velocity box",
+                            str(tmp_path / "data"), fix=False, dt=0.01, boundary="p p p", box=[(0.0, SIDE)] * 3, tilt=(0.0, 0.0, 0.0), comm=COMM)
+        lines[1] = "atom_style hybrid sphere 1 bond"
+        return noise(simulation().commands(lines + ["fix d all deform 1 xy erate 1.0 remap v"]), "noise_tolerance 1e-8")
+
+    plain = make().run(6).x
+    sim = make().commands(shrinks + [f"variable d equal {2 * A!r}*(1-0.02*step)", "fix shrink some adapt 1 atom diameter v_d"]).run(6)
+    whole, H = sim.x, edges(sim)[0]
+    sim = make().commands(shrinks)
+    for k in range(6):
+        sim.commands(f"set group some diameter {2 * A * (1 - 0.02 * k)!r}").run(1)
+    assert np.abs(up_to_images(whole - sim.x, H)).max() < 1e-9 < 1e-2 < np.abs(up_to_images(whole - plain, H)).max()
