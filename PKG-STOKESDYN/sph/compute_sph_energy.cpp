@@ -55,7 +55,9 @@ double FixSphEnergy::elastic_of(sd_sph_members g, const double *rho) const
   double sum = 0.0;
   for (const auto *fix : states) {
     g.members = groupbit | fix->groupbit;
-    sum += sd_sph_elastic_energy(&g, &fix->state, rho);
+    sd_sph_state of_forces = fix->state;
+    of_forces.P0 -= pair->reference_pressure();
+    sum += sd_sph_elastic_energy(&g, &of_forces, rho);
   }
   return sum;
 }

@@ -138,8 +138,8 @@ void FixWallRegionSph::post_force(int /*vflag*/)
       if (!(r < r0)) continue;
       if (!(r > 0.0)) outside(i);
       const double normal[3] = {contact.delx / r, contact.dely / r, contact.delz / r};
-      const double mirror = sd_sph_mirror(Sph::mass(lmp, i), pair->pressure(i), atom->rho[i],
-                                          pair->dW_dr(atom->type[i], r));
+      const double mirror = sd_sph_mirror(Sph::mass(lmp, i), pair->pressure(i) - pair->reference_pressure(),
+                                          atom->rho[i], pair->dW_dr(atom->type[i], r));
       push(i, normal, r, mirror);
     }
   }

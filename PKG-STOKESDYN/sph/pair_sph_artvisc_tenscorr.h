@@ -68,6 +68,8 @@ class PairSph : public LAMMPS_NS::Pair {
 
   /* For the SPH fixes. Pressures are those of the latest force. */
   double pressure(int i) const { return P[i]; }
+  /* What of them acts: pressures less this one. */
+  double reference_pressure() const { return sd_sph_reference(&model, background()); }
   double smoothing_length(int itype) const { return table[H][itype][itype]; }
   double sound_speed(int itype) const { return table[C][itype][itype]; }
   /* Of particle i, of this rank, in the latest force; with a law of viscosity 0 for walls. */
@@ -160,6 +162,8 @@ class PairSph : public LAMMPS_NS::Pair {
   std::vector<std::pair<const LAMMPS_NS::Fix *, std::string>> members;
   // above which least eigenvalue of M a support is whole; 0: nobody asks
   double whole = 0.0;
+  // The fluid fills its vessel: with correction, or with shift and P0 > 0, under which no surface is at rest.
+  bool full = false;
   int pressure_bits = 0, leapfrog_bits = 0, own_vest_bits = 0;
   // groups of all fixes that displace particles
   int displaced_bits = 0;

@@ -225,7 +225,7 @@ void PairSph::look_at_bodies_of(const Fix *rigid, const int *body, const double 
     const double V = Sph::mass(lmp, i) / rest_density(i);
     sums[VOLUME] += V;
     sums[OF_WATER] += Sph::mass(lmp, i);
-    sums[PRESSURE] += V * P[i];
+    sums[PRESSURE] += V * (P[i] - reference_pressure());
     sums[WIDTH] += V * smoothing_length(atom->type[i]) / pow(V, 1.0 / D);
   }
   MPI_Allreduce(mine.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_SUM, world);

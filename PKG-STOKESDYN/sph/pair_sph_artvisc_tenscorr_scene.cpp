@@ -141,7 +141,8 @@ void PairSph::choose_scheme()
 {
   model.delta = continuity && leapfrog ? continuity->delta : 0.0;
   whole = fixes_of(lmp, FixSphTension::STYLE).empty() ? 0.0 : SD_SPH_WHOLE;
-  const bool volume = continuity && continuity->volume;
+  const bool volume = continuity && continuity->volume,
+             planes = !fixes_of(lmp, "wall/sph").empty() || !fixes_of(lmp, "wall/region/sph").empty();
   const char *what = corrects ? "correction yes " : pliant ? "shift pliant " : "shift yes ";
   auto refuse = [&](bool when, const std::string &why) {
     if (when) voice.fail(what + why);
@@ -155,8 +156,7 @@ void PairSph::choose_scheme()
     refuse(model.dimension != domain->dimension, "needs the kernel of the box's dimension: write its name without 2d");
     refuse(!corrects && model.kernel == SD_SPH_CUBICSPLINE,
            "needs kernel wendland: with the cubic spline particles form pairs");
-    refuse(corrects && (!fixes_of(lmp, "wall/sph").empty() ||
-                        !fixes_of(lmp, "wall/region/sph").empty()),
+    refuse(corrects && planes,
            "does not go with fix wall/sph and wall/region/sph: there are no particles behind such a "
            "wall; use fix wall/adami/sph or shift yes");
   }
@@ -185,6 +185,7 @@ void PairSph::choose_scheme()
     voice.fail("keyword implicit needs fix nve/sph, whose step it knows");
   if (implicit && grains)
     grains->voice.fail("does not go with keyword implicit of pair_style sph/artVisc/tensCorr");
+  full = corrects || (shifts && !volume && !planes && background() > 0.0);
   FixSphFriction::provide(lmp, implicit);
   state = FixSphShift::provide(lmp, shifts, corrects || pliant);
   shared = sd_sph_level_of(&model) == SD_SPH_RATE;

@@ -287,18 +287,14 @@ void PairSph::close_sums()
   order.resize(columns * (size_t) (n + 1));
   kick.resize(corrects || pliant ? 3 * (size_t) atom->nlocal + 1 : 0);
   const double least = update->setupflag ? 0.6 : 0.5;
-  const sd_sph_closing closing = {atom->nlocal, sums.data(),  atom->mask,  own_vest_bits, least,
-                                  whole,        rate.data(), order.data(), kick.data()};
+  const sd_sph_closing closing = {atom->nlocal, sums.data(),  atom->mask,  own_vest_bits, full,
+                                  least,        whole,       rate.data(), order.data(), kick.data()};
   const int stops = sd_sph_close(&model, &particles, &closing);
   if (stops >= 0)
     voice.at_step().fail_one("keyword correction: atom " + std::to_string(atom->tag[stops]) +
                              " is at a free surface: the smallest eigenvalue of the matrix of its neighbours "
                              "is below " +
-                             text(least) + "; use shift yes where there is a free surface" +
-                             (update->setupflag
-                                  ? ""
-                                  : "; if the atom is inside the fluid: start from a lattice disturbed by "
-                                    "displace_atoms, since the flow draws the rows of an exact lattice apart"));
+                             text(least) + "; use shift yes where there is a free surface");
   if (state && update->setupflag && resumes()) state->put_back(order.data(), kick.data());
   forward(order.data(), columns);
   std::fill_n(&order[columns * (size_t) n], columns, 0.0);

@@ -131,7 +131,7 @@ int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_
     const sd_sph_symmetric whole = level == SD_SPH_MIXTURE ? moment(model->dimension, sums + 24) : M;
     const int inside = flows && sd_sph_above(&whole, SURFACE);
     du[3] = c->whole > 0.0 && inside && sd_sph_above(&whole, c->whole);
-    if (inside)
+    if (inside || (flows && c->full))
       order_shift(model->dimension, sums, sd_sph_of_pair(model, p, i, i)->support, du);
     if (level >= SD_SPH_VELOCITY) {
       memset(row + 8, 0, 8 * sizeof(double));

@@ -19,6 +19,9 @@ typedef struct {
   /* Those with mask & moving, and a phase that is none of a wall, flow and are shifted. */
   const int *mask;
   int moving;
+  /* There is no free surface, as always with correction: who flows is shifted, however few its neighbours
+   * are. Otherwise a gap that the flow draws inside the fluid stays for ever. */
+  int full;
   /* correction stops where the smallest eigenvalue of M is below */
   double least;
   /* with shift: column 7 of order is 1 where a particle flows and the smallest eigenvalue of M is above this;
@@ -35,9 +38,9 @@ typedef struct {
  * singular (too few neighbours, all in a plane), which leaves the diffusion of Molteni & Colagrossi
  * 2009 there.
  * du      - U x, x = 10 h s, of length 1 at most: the law of Michel et al. 2022 in a bounded form;
- *         0 where an eigenvalue of M is below 0.9, at a free surface and, since M is that of one
- *         fluid, at an interface, but for VOLUME_CORRECTION, where M is that of all; and for walls.
- *         There B of pliant is the unit matrix: M says more of the cut than of the arrangement
+ *         0 for walls and, unless `full`, where an eigenvalue of M is below 0.9: at a free surface and,
+ *         since M is that of one fluid, at an interface. Where it is below 0.9 B of pliant is the unit
+ *         matrix: M says more of the cut than of the arrangement
  * Returns the first particle where correction stops, -1: there is none. */
 int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_closing *c);
 

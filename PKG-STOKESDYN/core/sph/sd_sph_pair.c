@@ -77,15 +77,22 @@ void sd_sph_pack_v(int n, const double *v, const double *rho, double *v4)
   v4[4 * (size_t) n + 3] = 1.0;
 }
 
+double sd_sph_reference(const sd_sph_model *model, double P0)
+{
+  return sd_sph_shifts(model) ? P0 : 0.0;
+}
+
 void sd_sph_pack_pressures(const sd_sph_model *model, int n, const double *P, double P0,
                            const double *rho, double *x4)
 {
   /* Correction takes differences of P, volume weighs P with the other density; the plain force has
    * A. */
   const int as_is = sd_sph_corrects(model) || sd_sph_of_fluids(model);
-  const double background = sd_sph_corrects(model) ? P0 : 0.0;
-  for (int i = 0; i < n; i++)
-    x4[4 * (size_t) i + 3] = as_is ? P[i] - background : P[i] / (rho[i] * rho[i]);
+  const double reference = sd_sph_reference(model, P0);
+  for (int i = 0; i < n; i++) {
+    const double acts = P[i] - reference;
+    x4[4 * (size_t) i + 3] = as_is ? acts : acts / (rho[i] * rho[i]);
+  }
 }
 
 void sd_sph_each_pair(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,

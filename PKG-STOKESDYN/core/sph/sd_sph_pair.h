@@ -135,12 +135,14 @@ typedef struct {
 void sd_sph_pack_x(int n, const double *x, const double *v, const double *du, double shift,
                    double *x4);
 void sd_sph_pack_v(int n, const double *v, const double *rho, double *v4);
-/* The last column of x4 for forces, from P and rho [n]. With correction fluid feels differences of
- * pressure alone, so that it does not know a background P0, and a wall bears sums: there P - P0 stands.
- * The sum of 2 P0 V_a V_b g d over a body is 0 only while the fluid is spread evenly around it: of a
- * body that accelerates it took a fifth of the added mass at P0 = 50 rho a R. */
+/* The last column of x4 for forces, from P and rho [n]. Where particles are shifted, P - P0 acts: the sum
+ * of 2 P0 V_a V_b g d over a body, or over the neighbours of a particle, is 0 only while they are spread
+ * evenly around it. Of a body that accelerates it took up to a fifth of the added mass at P0 = 50 rho a R,
+ * and the order of the particles is the business of shift. The plain force has P. */
 void sd_sph_pack_pressures(const sd_sph_model *model, int n, const double *P, double P0,
                            const double *rho, double *x4);
+/* The P0 that stands there: 0 in the plain scheme. */
+double sd_sph_reference(const sd_sph_model *model, double P0);
 
 /* Adds to f4 [4 (n+1)], rows Fx Fy Fz drho, the last column only with rates (then the scheme is
  * plain). Not with correction: sd_sph_corrected_forces. each, if not null: F_a of each pair, 3

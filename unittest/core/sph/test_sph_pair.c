@@ -348,7 +348,7 @@ static void linear_density_does_not_diffuse(void **state)
     double sums[12 * (N + 1)] = {0}, order[4 * (N + 1)] = {0}, rate[N + 1] = {0},
                           curved[N + 1] = {0}, total = 0.0, largest = 0.0;
     sum_middle(&s, sums);
-    const sd_sph_closing closing = {N, sums, s.cls, 0, 0.0, 0.0, rate, order, NULL};
+    const sd_sph_closing closing = {N, sums, s.cls, 0, 0, 0.0, 0.0, rate, order, NULL};
     assert_int_equal(sd_sph_close(&s.model, &s.p, &closing), -1);
     for (int i = 0; i < N; i++)
       for (int d = 0; d < 3; d++) CHECK_NEAR(order[4 * i + d], slope[d], 1e-9);

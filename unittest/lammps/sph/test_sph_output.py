@@ -125,6 +125,18 @@ def test_a_sound_wave_loses_energy_to_diffusion_alone(density, rises):
     lmp.close()
 
 
+def test_with_shift_no_energy_belongs_to_a_background_pressure():
+    """Its force is P - P0, and the elastic energy is that of it: 1/4 of the kinetic energy would belong to P0 = 3 otherwise."""
+    found = []
+    for background in ("", "3"):
+        lmp = start()
+        run(lmp, PERIODIC.format(pair="shift yes", density="delta 0.1", background=background) + "velocity all set v_u v_w 0\nrun 50 post no")
+        found.append(energy(lmp)[:5])
+        lmp.close()
+    assert found[0][2] > 1e-5
+    assert found[1] == pytest.approx(found[0], rel=1e-6, abs=1e-9)
+
+
 FREE = {    # region, velocities, kinetic energy
     "two jets": ("block -0.5 0.5 -0.25 0.25 INF INF", "-0.7*x/abs(x)", "0", 0.5 * 0.49 * 0.5),
     "drop": ("sphere 0 0 0 0.5", "-0.8*x", "0.8*y", 0.25 * 0.64 * 3.141593 / 16),
