@@ -47,7 +47,7 @@ sd_sph_members FixSphEnergy::group()
     for (int i = 0; i < atom->nlocal; i++) masks[i] = mask[i] & ~(pair->is_held(i) ? groupbit : 0);
     mask = masks.data();
   }
-  return {atom->nlocal, mask, groupbit, masses.data(), atom->v ? atom->v[0] : nullptr};
+  return {atom->nlocal, mask, groupbit, masses.data(), Sph::numbers(atom->v)};
 }
 
 double FixSphEnergy::elastic_of(sd_sph_members g, const double *rho) const

@@ -171,7 +171,7 @@ void PairSph::look_at_walls()
   constexpr double NOBODY = -1e300;
   const int n = particles.n;
   std::vector<double> likeness(n + 1, NOBODY);
-  sd_sph_pack_x(n, atom->x ? atom->x[0] : nullptr, nullptr, nullptr, 0.0, x4.data());
+  sd_sph_pack_x(n, Sph::numbers(atom->x), nullptr, nullptr, 0.0, x4.data());
   sd_sph_likeness(&model, &raw, &particles, likeness.data());
   reverse(likeness.data(), 1, true);
   tagint other_mass = MAXTAGINT;

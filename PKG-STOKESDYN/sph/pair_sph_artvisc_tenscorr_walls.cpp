@@ -162,7 +162,7 @@ void PairSph::sums_of_other_fluids(const double *spins_of_walls)
 void PairSph::wall_particles()
 {
   const int n = particles.n;
-  sd_sph_pack_v(n, atom->vest ? atom->vest[0] : nullptr, atom->rho, v4.data());
+  sd_sph_pack_v(n, Sph::numbers(atom->vest), atom->rho, v4.data());
   const double *w = spins_of_walls();
   weights.resize(8 * (size_t) (n + 1));
   sd_sph_pack_fluid(&particles, P.data(), weights.data());

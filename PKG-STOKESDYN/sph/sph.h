@@ -49,6 +49,9 @@ namespace Sph {
 
   double mass(LAMMPS_NS::LAMMPS *lmp, int i);
 
+  /* [3 n] the rows of an array of LAMMPS, which are one piece of memory; nullptr: there are none */
+  inline double *numbers(double **rows) { return rows ? rows[0] : nullptr; }
+
 }    // namespace Sph
 
 // --- fixes ---------------------------------------------------------------------------------------
