@@ -56,6 +56,7 @@ for kernel in ("wendland", "cubicspline"):
             CASES["%s, %s, fix %s" % (kernel, name, integrator)] = OURS.format(kernel=kernel, terms=terms, integrator=integrator,
                                                                               density="")
 for name, terms, density in (("artVisc", "", ""), ("artVisc + delta", "", "delta 0.1"), ("artVisc + delta + shift", "shift yes", "delta 0.1"),
+                             ("artVisc + delta + pliant shift", "shift pliant", "delta 0.1"),
                              ("artVisc + delta + correction", "correction yes", "delta 0.1")):
     CASES["wendland, %s, fix nve/sph" % name] = OURS.format(kernel="wendland", terms="artVisc 0.1 0 1.44e-6 " + terms,
                                                             integrator="nve/sph", density=density)

@@ -38,7 +38,7 @@ def lawful(o, no):
     no(o["volume"] == "yes", tensCorr="no", filter="no")
     no(o["fluids"] == 2, volume="yes" if o["scheme"] != "summation" else "no", filter="no")
     no(o["fluids"] == 2 and (o["scheme"] == "summation" or o["space"] in ("ends", "body")), fluids=1)
-    no(o["state"] == "absolut" and o["fluids"] == 2, state="Tait")
+    no(o["state"] == "absolut" and (o["fluids"] == 2 or o["space"] == "ends"), state="Tait")    # at an outlet the water would meet a vacuum
     no(o["space"] not in WALLED, wall="at rest")
     no(o["space"] == "body", wall="own")
     no(o["space"] != "body" and o["wall"] == "own" and o["scheme"] == "summation", wall="at rest")
