@@ -3,48 +3,75 @@
 #include "ranks.h"
 
 #include "atom.h"
+#include "domain.h"
 #include "update.h"
 
+#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
+static constexpr uint64_t ODD = 0x9E3779B97F4A7C15u;
+
+static uint64_t mixed(uint64_t hash, uint64_t bits)
+{
+  hash = (hash ^ bits) * ODD;
+  return hash ^ hash >> 29;
+}
+
+/* A number from -1 to 1 that is k's alone */
+static double weight_of(uint64_t k)
+{
+  return (double) (int64_t) mixed(mixed(k, ODD), k) * 0x1p-63;
+}
+
 void EndOfRun::record(int groupbit)
 {
-  uint64_t mine = 0;
+  uint64_t hashes = 0;
+  double mine[2] = {0.0, 0.0};
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    uint64_t hash = (uint64_t) atom->tag[i];
+    const uint64_t tag = (uint64_t) atom->tag[i];
+    double where[4] = {0.0, 0.0, 0.0, atom->radius ? atom->radius[i] : 0.0};
+    domain->unmap(atom->x[i], atom->image[i], where);
+    uint64_t hash = tag;
     for (int d = 0; d < 3; d++) {
       uint64_t bits;
       memcpy(&bits, &atom->v[i][d], sizeof(bits));
-      hash = (hash ^ bits) * 0x9E3779B97F4A7C15u;
-      hash ^= hash >> 29;
+      hash = mixed(hash, bits);
     }
-    mine += hash;
+    hashes += hash;
+    for (int k = 0; k < 4; k++) {
+      const double part = weight_of(4 * tag + k) * where[k];
+      mine[0] += part;
+      mine[1] += std::fabs(part);
+    }
   }
   velocities = 0;
-  for (const uint64_t part : from_all<uint64_t>(world, {mine})) velocities += part;
-  step = (double) update->ntimestep;
+  for (const uint64_t part : from_all<uint64_t>(world, {hashes})) velocities += part;
+  places = sum_of_all(world, mine[0]);
+  size = sum_of_all(world, mine[1]);
 }
 
 bool EndOfRun::still_stands(int groupbit) const
 {
   EndOfRun now(lmp);
   now.record(groupbit);
-  return step == now.step && velocities == now.velocities;
+  return size >= 0.0 && velocities == now.velocities && std::fabs(places - now.places) <= 1e-13 * size;
 }
 
 void EndOfRun::write(int groupbit, NamedState &state)
 {
   if (update->whichflag == 1) record(groupbit);
-  state.put("step", step);
+  state.put("places", places);
+  state.put("size", size);
   state.put_bits("velocities", velocities);
 }
 
 void EndOfRun::read(const NamedState &state)
 {
-  step = state.get("step", -1.0);
+  places = state.get("places", 0.0);
+  size = state.get("size", -1.0);
   velocities = state.get_bits("velocities", 0);
 }

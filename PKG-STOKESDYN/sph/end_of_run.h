@@ -1,7 +1,9 @@
-/* How a run ended: the step, and the sum of a hash of all velocities of a group. If they are the
- * same when a run begins, nobody has changed a velocity in between, and what the last step found
- * with velocities at half step still stands (common/resume.h has rows, which cost 64 bytes an atom;
- * a sum of hashes has no order, so that 16 bytes in all will do on any number of ranks). */
+/* How a run ended: the sum of a hash of all velocities of a group, and of all places and radii, each
+ * with a weight of its own. If they are the same when a run begins, nobody has changed any of them in
+ * between, and what the last step found with velocities at half step still stands. Velocities must
+ * be the same to the bit; unwrapped places are so within rounding (common/resume.h has rows, which
+ * cost 64 bytes an atom; sums have no order, so that 24 bytes in all will do on any number of
+ * ranks). */
 #ifndef SD_END_OF_RUN_H
 #define SD_END_OF_RUN_H
 
@@ -25,7 +27,8 @@ class EndOfRun : protected LAMMPS_NS::Pointers {
   void read(const NamedState &);
 
  private:
-  double step = -1.0;
+  /* sum of the weighted numbers, and of their sizes: negative before any run has ended */
+  double places = 0.0, size = -1.0;
   uint64_t velocities = 0;
 };
 

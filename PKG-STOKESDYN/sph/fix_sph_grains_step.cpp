@@ -74,8 +74,9 @@ void FixSphGrains::find_fractions()
   else
     look_at_places();
   weigh();
-  if (!(update->setupflag && resumes())) sum_fractions();
-  if (update->setupflag && filled == 0.0 && !fills) {    // the volumes had no phi yet
+  const bool displaces = fills && filled == 0.0, goes_on = update->setupflag && resumes();
+  if (!goes_on) sum_fractions();
+  if (update->setupflag && !goes_on && !displaces) {    // the volumes had the phi of another scene, or none
     weigh();
     sum_fractions();
   }

@@ -196,6 +196,8 @@ void FixHydroVans::setup(int vflag)
     renew_fluctuations(0.0, true);
   }
   looked_step = -1;
+  // reset_timestep gives the step where the last run ended another number
+  if (last_step >= 0) last_step = update->ntimestep;
   post_force(vflag);
   tell_stiff();
 }

@@ -247,8 +247,8 @@ def test_momentum_of_water_and_grains_is_kept_on_any_number_of_ranks(ranks, newt
     assert np.minimum(off, np.abs(8 - off)).max() < 1e-11 and np.abs(m - t["mass"]).max() < 1e-12
 
 
-@pytest.mark.parametrize("runs", ["run 40", "run 15\nrun 25", "run 20\nrun 0\nrun 20", "run 20\nwrite_restart {file}", "run 20 every 7 \"write_restart {file}\""],
-                         ids=["one", "two", "with none between", "restart", "restart from within"])
+@pytest.mark.parametrize("runs", ["run 40", "run 15\nrun 25", "run 20\nrun 0\nrun 20", "run 15\nreset_timestep 0\nrun 25", "run 20\nwrite_restart {file}", "run 20 every 7 \"write_restart {file}\""],
+                         ids=["one", "two", "with none between", "reset_timestep", "restart", "restart from within"])
 def test_a_broken_run_is_the_unbroken_one(runs, tmp_path):
     """In the middle of a fall, to rounding: the forces of the last step stand, which had velocities at half step. Grains have no pressure."""
     lmp = start()
@@ -269,9 +269,11 @@ def test_a_broken_run_is_the_unbroken_one(runs, tmp_path):
     lmp.close()
 
 
-@pytest.mark.parametrize("change", ["velocity grains set 0.5 NULL NULL units box", "velocity water set NULL 0.2 NULL units box"])
-def test_a_run_after_velocities_have_changed_finds_the_drag_anew(change):
-    """The force on grains at the beginning is that of a run that begins so."""
+@pytest.mark.parametrize("change", ["velocity grains set 0.5 NULL NULL units box", "velocity water set NULL 0.2 NULL units box",
+                                    "displace_atoms grains move 0.4 0 0 units box", "displace_atoms water move 0.4 0 0 units box",
+                                    "set group grains diameter 0.7"])
+def test_a_run_after_a_change_finds_the_drag_anew(change):
+    """The force on grains at the beginning is that of a run that begins so, within what the volumes of the water are lacking that are found from phi."""
     found = []
     for before in ("run 5\n", "run 5\nunfix g\nfix g grains sph/grains displace no\n"):
         lmp = start()
