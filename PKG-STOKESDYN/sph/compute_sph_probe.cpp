@@ -44,7 +44,7 @@ void ComputeSphProbe::init()
 
 double ComputeSphProbe::volume(int i) const
 {
-  return Sph::mass(lmp, i) / atom->rho[i];
+  return pair->volume_of(i);
 }
 
 template <class Use> void ComputeSphProbe::each_image(const Probe &probe, int i, const Use &use) const

@@ -1,6 +1,7 @@
 #include "end_of_run.h"
 
 #include "ranks.h"
+#include "sph.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -33,7 +34,7 @@ void EndOfRun::record(int groupbit)
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     const uint64_t tag = (uint64_t) atom->tag[i];
-    double where[4] = {0.0, 0.0, 0.0, atom->radius ? atom->radius[i] : 0.0};
+    double where[5] = {0.0, 0.0, 0.0, atom->radius ? atom->radius[i] : 0.0, Sph::mass(lmp, i)};
     domain->unmap(atom->x[i], atom->image[i], where);
     uint64_t hash = tag;
     for (int d = 0; d < 3; d++) {
@@ -42,8 +43,8 @@ void EndOfRun::record(int groupbit)
       hash = mixed(hash, bits);
     }
     hashes += hash;
-    for (int k = 0; k < 4; k++) {
-      const double part = weight_of(4 * tag + k) * where[k];
+    for (int k = 0; k < 5; k++) {
+      const double part = weight_of(5 * tag + k) * where[k];
       mine[0] += part;
       mine[1] += std::fabs(part);
     }

@@ -1,9 +1,9 @@
-/* How a run ended: the sum of a hash of all velocities of a group, and of all places and radii, each
- * with a weight of its own. If they are the same when a run begins, nobody has changed any of them in
- * between, and what the last step found with velocities at half step still stands. Velocities must
- * be the same to the bit; unwrapped places are so within rounding (common/resume.h has rows, which
- * cost 64 bytes an atom; sums have no order, so that 24 bytes in all will do on any number of
- * ranks). */
+/* How a run ended: the sum of a hash of all velocities of a group, and of all places, radii and masses,
+ * each with a weight of its own. If they are the same when a run begins, nobody has changed any of
+ * them in between, and what the last step found with velocities at half step still stands.
+ * Velocities must be the same to the bit; unwrapped places are so within rounding (common/resume.h
+ * has rows, which cost 64 bytes an atom; sums have no order, so that 24 bytes in all will do on any
+ * number of ranks). */
 #ifndef SD_END_OF_RUN_H
 #define SD_END_OF_RUN_H
 

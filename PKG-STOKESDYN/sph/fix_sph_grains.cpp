@@ -3,6 +3,7 @@
 
 #include "fixes.h"
 #include "keywords.h"
+#include "neighbours.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
 
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
@@ -111,7 +111,6 @@ void FixSphGrains::init()
   if (!pair->is_newtonian())
     voice.fail("the drag laws are those of grains in a Newtonian fluid, and keyword rheology of "
                "pair_style sph/artVisc/tensCorr gives the water another law: leave one of them out");
-  check_order();
   find_held();
   check_scene();
   law.kernel = pair->kernel();
@@ -121,28 +120,44 @@ void FixSphGrains::init()
   law.wake = &wake;
 }
 
-/* Drag is implicit: what else moves a grain must be known before. */
-void FixSphGrains::check_order() const
-{
-  bool behind = false;
-  for (int k = 0; k < modify->nfix; k++) {
-    const Fix *fix = modify->fix[k];
-    if (behind && strcmp(fix->style, "gravity") == 0)
-      voice.fail(std::string("fix ") + fix->id +
-                 " of style gravity stands behind it in the input, and drag is implicit, "
-                 "so that it must know all other forces: define gravity before it");
-    behind = behind || fix == this;
-  }
-}
-
 /* Forces move those of integrators alone, but for rigid bodies, whose grains do not know the mass
  * that they are moved with: these count as held within a step. */
 void FixSphGrains::find_held()
 {
   free_bits = Sph::groups(Sph::integrators(lmp));
-  held_bits = 0;
+  held_bits = body_bits = 0;
+  for (int k = 0; k < modify->nfix; k++)
+    if (fits("rigid*", modify->fix[k]->style)) body_bits |= modify->fix[k]->groupbit;
   for (const char *style : {"freeze", "setforce", "move"})
     held_bits |= Sph::groups(fixes_of(lmp, style));
+}
+
+bool FixSphGrains::is_too_large(double diameter) const
+{
+  return law.h < 2.0 * diameter * (1.0 - 1e-9);
+}
+
+std::string FixSphGrains::says_too_large(double diameter) const
+{
+  return "the smoothing length h = " + text(law.h) + " is below 2 diameters of the largest grain, " + text(diameter) +
+      ": water is averaged over many grains; use a larger h and spacing of the water, or "
+      "smaller grains (larger bodies: particles of a wall and fix rigid)";
+}
+
+/* Those that look like its grains: new atoms are of the group all and of that of their fix. */
+void FixSphGrains::look_at_strangers()
+{
+  std::vector<int> mine(atom->ntypes + 1, 0), of_grains(mine);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit) mine[atom->type[i]] = 1;
+  MPI_Allreduce(mine.data(), of_grains.data(), (int) mine.size(), MPI_INT, MPI_MAX, world);
+  const tagint stranger = first_atom(lmp, [&](int i) {
+    return of_grains[atom->type[i]] && !(atom->mask[i] & groupbit);
+  });
+  if (stranger)
+    voice.warn("atom " + std::to_string(stranger) +
+               " has a type of its grains and is not in its group, so that the water does not know it: put it into "
+               "the group (fix deposit and fix pour do so if that is their own group)");
 }
 
 /* One h and one viscosity of all water, and grains that are small beside h. */
@@ -178,12 +193,9 @@ void FixSphGrains::check_scene()
   if (most > least * (1.0 + 1e-9))
     voice.fail("types of pair_style sph/artVisc/tensCorr have smoothing lengths from " +
                text(least) + " to " + text(most) + ": it needs one h for all of them");
-  if (least < 2.0 * diameter * (1.0 - 1e-9))
-    voice.fail("the smoothing length h = " + text(least) +
-               " is below 2 diameters of the largest grain, " + text(diameter) +
-               ": water is averaged over many grains; use a larger h and spacing of the water, or "
-               "smaller grains (larger bodies: particles of a wall and fix rigid)");
   law.h = least;
+  if (is_too_large(diameter)) voice.fail(says_too_large(diameter));
+  look_at_strangers();
 }
 
 // --- in a step -----------------------------------------------------------------------------------
@@ -198,6 +210,7 @@ void FixSphGrains::check_fractions()
   };
   for (size_t j = 0; j < grains.size(); j++) {
     largest = std::max(largest, mean_phi[j]);
+    if (is_too_large(2.0 * a[j])) voice.at_step().fail_one(says_too_large(2.0 * a[j]));
     const double most = update->setupflag && !beside_wall(j) ? MOST : CLOSE;
     if (mean_phi[j] > most)
       voice.at_step().fail_one("the volume fraction of grains around atom " +
@@ -213,4 +226,16 @@ void FixSphGrains::check_fractions()
           std::to_string(atom->tag[points[p]]) +
           ": they overlap, or the spacing of the water is too wide "
           "for its h: use stiffer contacts, fewer or smaller grains, or a larger h");
+}
+
+/* Drag on the members of rigid bodies is explicit (find_held): k/M is their rate. */
+void FixSphGrains::check_bodies(const std::vector<double> &k)
+{
+  for (size_t j = 0; j < grains.size(); j++) {
+    const int i = grains[j];
+    if (!(atom->mask[i] & body_bits) || update->dt * k[j] <= atom->rmass[i]) continue;
+    voice.at_step().fail_one("atom " + std::to_string(atom->tag[i]) +
+                             " is of a rigid body, on which drag is explicit: the time step " + text(update->dt) +
+                             " must be below its mass over its drag, " + text(atom->rmass[i] / k[j]));
+  }
 }

@@ -31,6 +31,8 @@ class FixSphGrains : public SphFix {
    * loses what the grains displace. */
   void find_fractions();
   const double *fractions() const { return phi.data(); }
+  /* of owned atom i as the last step has left it */
+  double fraction(int i) const { return rows[i][0]; }
   /* [3 n] the velocity of the mixture, of that of particles, v [3 n]: what the rate of the density
    * goes by */
   const double *mixture(const double *v);
@@ -51,7 +53,8 @@ class FixSphGrains : public SphFix {
   sd_sph_wake wake = {};
   void parse_hindrance(Keywords &in);
 
-  int free_bits = 0, held_bits = 0;
+  // groups of integrators, of what holds grains, of rigid bodies
+  int free_bits = 0, held_bits = 0, body_bits = 0;
 
   // kept with atoms: phi; phi, force of the water on grains or of grains on water
   AtomArray rows, shown;
@@ -72,7 +75,9 @@ class FixSphGrains : public SphFix {
   double total[3] = {0.0, 0.0, 0.0}, largest = 0.0;
   sd_sph_around around() const { return {(int) grains.size(), first.data(), particle.data()}; }
   void check_scene();
-  void check_order() const;
+  void look_at_strangers();
+  bool is_too_large(double diameter) const;
+  std::string says_too_large(double diameter) const;
   void find_held();
   void recall();
   void weigh();
@@ -81,6 +86,7 @@ class FixSphGrains : public SphFix {
   void list_particles();
   void look_at_places();
   void check_fractions();
+  void check_bodies(const std::vector<double> &k);
   std::vector<double> at_points(const std::vector<double> &of_atoms, int columns) const;
   std::vector<double> at_atoms(const std::vector<double> &of_points, int columns) const;
   std::vector<double> mean_of(const std::vector<double> &of_atoms, int columns) const;

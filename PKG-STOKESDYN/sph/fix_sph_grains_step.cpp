@@ -260,6 +260,7 @@ void FixSphGrains::drags(const std::vector<double> &F, std::vector<double> &D)
   sd_sph_grain_phi(n, mean_phi.data(), own.data(), at_grains.data());
   sd_sph_grain_drag(&law, n, a.data(), u.data(), v.data(), rho.data(), at_grains.data(), wet.data(),
                     k.data());
+  check_bodies(k);
   for (int j = 0; j < n; j++) shown.give(grains[j])[0] = at_grains[j];
 
   const sd_sph_around list = around();

@@ -1,11 +1,15 @@
 #include "neighbours_sph.h"
 
+#include "fix_sph_grains.h"
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix.h"
 #include "force.h"
 #include "group.h"
+#include "modify.h"
 #include "update.h"
+
+#include <cstring>
 
 using namespace LAMMPS_NS;
 
@@ -26,6 +30,20 @@ static bool is_dynamic(const Guest &guest, std::string &says)
   const Group *group = guest.lmp->group;
   says = group->names[guest.fix->igroup];
   return group->dynamic[guest.fix->igroup] != 0;
+}
+
+static bool stands_behind_grains(const Guest &guest, std::string & /*says*/)
+{
+  const Modify *modify = guest.lmp->modify;
+  bool behind = false;
+  for (int k = 0; k < modify->nfix && modify->fix[k] != guest.fix; k++)
+    behind = behind || strcmp(modify->fix[k]->style, FixSphGrains::STYLE) == 0;
+  return behind;
+}
+
+static bool stands_before_grains(const Guest &guest, std::string &says)
+{
+  return !stands_behind_grains(guest, says);
 }
 
 // --- the table -----------------------------------------------------------------------------------
@@ -61,8 +79,14 @@ const std::vector<Neighbour> &sph_neighbours()
       {N::FIX, "hydro/vans viscous* langevin* drag", GRAINS, N::ERROR,
        "drags grains that the water of SPH drags already: take it out, or give it other atoms", nullptr, GRAIN},
       // what goes together
+      {N::FIX, "gravity addforce efield spring* wall/gran*", GRAINS, N::ERROR,
+       "stands behind fix sph/grains in the input, whose drag is implicit, so that it must know all other forces: "
+       "define it before", stands_behind_grains, GRAIN | WATER},
+      {N::FIX, "freeze setforce planeforce lineforce", GRAINS, N::ERROR,
+       "stands before fix sph/grains in the input, whose forces then move what it holds: define it behind",
+       stands_before_grains, GRAIN},
       {N::FIX, "wall/gran* gravity nve/sphere freeze", GRAINS, N::FINE,
-       "goes with grains in the water; gravity stands before fix sph/grains in the input", nullptr, GRAIN},
+       "goes with grains in the water", nullptr, GRAIN},
       {N::PAIR, "sph/heatconduction", 0, N::FINE, "changes the energy of particles alone"},
       {N::PAIR, "gran/* granular lj/* zero", 0, N::FINE,
        "acts between bodies of wall particles below hybrid or hybrid/overlay"},

@@ -1,6 +1,7 @@
 /* Of pair_style sph/artVisc/tensCorr: particles that are no fluid, of walls and of open ends. */
 #include "pair_sph_artvisc_tenscorr.h"
 
+#include "fix_sph_grains.h"
 #include "fix_sph_opening.h"
 #include "fix_sph_settings.h"
 #include "fix_wall_sph.h"
@@ -67,6 +68,11 @@ double PairSph::rest_density(int i) const
 {
   const FixSphPressure *eos = state_of(i);
   return eos && eos->state.rho0 > 0.0 ? eos->state.rho0 : atom->rho[i];
+}
+
+double PairSph::volume_of(int i) const
+{
+  return Sph::mass(lmp, i) / (atom->rho[i] * (grains ? 1.0 - grains->fraction(i) : 1.0));
 }
 
 /* Particles of an inlet have the pressure of the fluid before them, as walls, and their own

@@ -3,13 +3,13 @@ H = 2.0
 
 
 def scene(size, mu, c, dt, fix, grains, diameter=0.5, boundary="p p p", density=2.65, pair="central shift yes", gravity="", floor=0, newton="on",
-          before_fix="", mover="fix mg grains nve/sphere", delta=0.1):
+          before_fix="", mover="fix mg grains nve/sphere", delta=0.1, atom_style="sph sphere"):
     """Water (type 1) fills size[0] x size[1] x size[2] spacings, with `floor` rows of wall (type 3) below; grains (type 2): commands."""
     x, y, z = size
     return f"""
     units lj
     newton {newton}
-    atom_style hybrid sph sphere
+    atom_style hybrid {atom_style}
     atom_modify map array sort 0 0
     boundary {boundary}
     lattice sc 1 origin 0.5 0.5 0.5

@@ -61,6 +61,8 @@ DYNAMICS = [
 # of packages and versions that not every LAMMPS has
 ELSEWHERE = {("FIX rheo*", "0"): ("fix", "rheo"),
              ("FIX hydro/vans viscous* langevin* drag", "GRAINS"): ("fix", "viscous"),    # three dimensions: test_sph_grains.py
+             ("FIX gravity addforce efield spring* wall/gran*", "GRAINS"): ("fix", "gravity"),
+             ("FIX freeze setforce planeforce lineforce", "GRAINS"): ("fix", "setforce"),
              ("FIX rigid*", "TENSION"): ("fix", "rigid")}    # test_sph_tension.py
 
 

@@ -59,6 +59,8 @@ INPUTS = {
     "atoms are sorted": TANK.replace("sort 0 0", "sort 5 1.0"),
     "skin": TANK.replace("neighbor 0.3", "neighbor 0.8"),
     "hybrid": TANK.replace("hybrid/overlay", "hybrid").replace("* * zero", "1*3 2 zero\n    pair_coeff 2 3 zero"),
+    "diameters are set anew in each step": TANK.replace("hybrid sph sphere", "hybrid sph sphere 1").replace(
+        "fix g grains", "variable d equal 0.9\n    fix same grains adapt 1 atom diameter v_d\n    fix g grains"),
     "a third pair style": TANK.replace("zero 1", "zero 1 gran/hooke 0 0 0 0 0 0").replace("* * zero", "* * zero\n    pair_coeff 2 2 gran/hooke"),
 }
 
@@ -82,3 +84,16 @@ def test_a_fix_that_is_defined_again_goes_on(again, allowed, right):
     """The coupling finds the drag anew: second order in the time step, here 1e-3 of the forces in that moment."""
     found = state(TANK, f"run 15\nunfix {again.split()[0]}\nfix {again}\nrun 15")
     assert difference(found, right) < allowed
+
+
+def test_grains_pass_open_ends_with_the_water():
+    """Grains as heavy as the water that a plug flow carries from near an inlet through an outlet: nothing accelerates, and the water that comes in fills the
+    room that they leave."""
+    lmp = start()
+    text = scene((24, 5, 5), 0.05, 10, 0.05, "", singles([(10.2, 2.4, 2.6), (11.2, 3.4, 1.6)]), 0.9, "f p p", density=1.0)
+    run(lmp, text + "velocity all set 1 0 0 units box\nfix in water sph/inlet xlo 7 7 velocity 1\nfix out water sph/outlet xhi 17 7 pressure 0\nrun 200")
+    x, v, m, kind = by_id(lmp, "x", 3)[:, 0], by_id(lmp, "v", 3), by_id(lmp, "rmass"), by_id(lmp, "type")
+    lmp.close()
+    assert np.abs(v - [1, 0, 0]).max() < 1e-9 and (x[kind == 2] > 17).all()
+    flow = (kind == 1) & (x > 7) & (x < 17)
+    assert flow.sum() == 250 and abs(m[flow].sum() - 250) < 1e-3
