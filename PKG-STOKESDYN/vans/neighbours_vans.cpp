@@ -1,6 +1,23 @@
 #include "neighbours_vans.h"
 
+#include "fix_hydro_vans.h"
+
+#include "modify.h"
+
+#include <cstring>
+
+using namespace LAMMPS_NS;
+
 namespace StokesDyn {
+
+static bool stands_before_stream(const Guest &guest, std::string & /*says*/)
+{
+  const Modify *modify = guest.lmp->modify;
+  bool behind = false;
+  for (int k = 0; k < modify->nfix && modify->fix[k] != guest.fix; k++)
+    behind = behind || strcmp(modify->fix[k]->style, FixHydroVans::STYLE) == 0;
+  return !behind;
+}
 
 const std::vector<Neighbour> &vans_neighbours()
 {
@@ -10,6 +27,9 @@ const std::vector<Neighbour> &vans_neighbours()
        "turns grains back, but not the fluctuation that carries them to its wall: light grains gather "
        "there. Let no wall/reflect stand in the water or at its surface, where this fix turns the "
        "fluctuation itself"},
+      {N::FIX, "freeze setforce planeforce lineforce", 0, N::WARNING,
+       "stands before this fix in the input, whose forces then move what it holds: define it behind",
+       stands_before_stream},
   };
   return table;
 }

@@ -114,7 +114,8 @@ def test_who_moves_or_is_a_wall_is_no_dynamic_group(tmp_path, case):
 def test_every_row_has_a_case(tmp_path):
     tested = {case[:2] for case in BESIDE + DYNAMICS}
     assert not [row for row in rows("sph") if row[:2] not in tested and row[2] != "FINE" and row[:2] not in ELSEWHERE]
-    assert [row for row in rows("vans") if row[2] != "FINE"] == [("FIX wall/reflect*", "LANGEVIN", "WARNING")]    # test_vans_coupling.py
+    assert [row for row in rows("vans") if row[2] != "FINE"] == [
+        ("FIX wall/reflect*", "LANGEVIN", "WARNING"), ("FIX freeze setforce planeforce lineforce", "0", "WARNING")]    # test_vans_coupling.py
 
 
 def test_viscosity_that_damps_sound_lets_fix_sph_be(tmp_path):

@@ -240,6 +240,16 @@ def test_water_that_moves_on_alone_is_not_too_far_apart(tmp_path):
     assert "couplings are too far apart" not in done.stdout
 
 
+@pytest.mark.parametrize("before", [True, False])
+def test_what_holds_grains_stands_behind_the_stream(tmp_path, before):
+    """Otherwise the force of the stream moves them, and a warning says so."""
+    script, hold = bed_of_specks(1e-4, 10), "fix hold all setforce 0 0 0\n"
+    at = script.index("fix h") if before else script.index("run 1")
+    done = run_lmp(tmp_path, script[:at] + hold + script[at:])
+    assert done.returncode == 0, done.stdout[-1000:]
+    assert ("fix hold of style setforce stands before this fix in the input" in done.stdout) == before
+
+
 @pytest.mark.parametrize("model, wall, told", [("langevin", "reflect", True), ("langevin", "lj126", False), ("correlated", "reflect", False)])
 def test_a_wall_that_mirrors_grains_is_told(tmp_path, model, wall, told):
     end = "zhi 0.004" if wall == "reflect" else "zhi 0.004 1e-12 1e-6 2e-6"
