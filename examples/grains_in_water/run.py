@@ -13,6 +13,12 @@ steps, dt = 250 if S.QUICK else 4000, 0.013
 early = 1 if S.QUICK else 4    # the snapshot at t = 13
 
 
+# Rondon, Pouliquen & Aussillous 2011, as published with sedFoam (tutorials/Py/DATA/Rondon2012): height over width and phi at first; height at last
+# over that at first; run-out over width; largest excess pressure at the foot, in Pa, over phi (2500 - 1010) 9.81 height
+MEASURED = {"loose": (4.8 / 6, 0.55, 2.62 / 4.8, (21.2 - 6) / 6, 144 / (0.55 * 1490 * 9.81 * 0.048)),
+            "dense": (4.2 / 6, 0.60, 4.22 / 4.2, (12.1 - 6) / 6, -126 / (0.60 * 1490 * 9.81 * 0.042))}
+
+
 def front(shot):
     """The place up to which 95 % of the grains stand that touch the floor."""
     return np.quantile(shot["x"][(shot["type"] == 2) & (shot["z"] < 1)], 0.95)
@@ -55,6 +61,11 @@ for a, of, label in ((axes[3, 0], fronts, "front"), (axes[3, 1], pressures, "exc
 figure.savefig(os.path.join(out, "grains_in_water.png"), bbox_inches="tight")
 table = "| | phi | height at first | height at last | front at t = 13 | front at last | excess pressure until t = 13 |\n|---|---|---|---|---|---|---|\n"
 table += "".join("| %s | %.2f | %.1f | %.1f | %.1f | %.1f | %+.2f |\n" % row for row in rows)
+table += "\n| | height over width | phi | height at last, of the first | run-out over width | largest excess pressure |\n|---|---|---|---|---|---|\n"
+found = {row[0]: (row[2] / 6, row[1], row[3] / row[2], row[5] / 6 - 1, max(pressures[row[0]][1:], key=abs) / (row[1] * 1.5 * row[2])) for row in rows}
+for name in ("loose", "dense"):
+    for who, of in (("measured", MEASURED), ("here", found)):
+        table += "| %s, %s | %.2f | %.2f | %.2f | %.2f | %+.2f |\n" % (name, who, *of[name])
 loose, dense = rows
 c.within("loose and dense: difference of phi", loose[1] - dense[1], -0.15, -0.05)
 c.below("excess pressure of the water in the dense column, which is sucked in", dense[6], -0.3)
@@ -62,6 +73,8 @@ c.below("the same less that of the loose column", dense[6] - loose[6], -0.3)
 if not S.QUICK:
     c.below("way of the dense front until t = 13 over that of the loose one", (dense[4] - 6) / (loose[4] - 6), 0.5)
     c.within("loose: run-out over the width of the column", loose[5] / 6 - 1, 1.0, 1.5)
+    for name in ("loose", "dense"):
+        c.near(name + ": height at last, of that at first, over the measured one", found[name][2] / MEASURED[name][2], 1.0, 0.2)
     c.below("dense: run-out over that of the loose one", (dense[5] - 6) / (loose[5] - 6), 0.75)
 S.keep(folder, out, "grains_in_water.png", table)
 sys.exit(c.finish())
