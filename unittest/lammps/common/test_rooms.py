@@ -54,6 +54,13 @@ def test_who_asks_the_boundary_stands_in_the_map():
     assert not [name for name in sorted(asks) if f"`{name}`" not in listed]
 
 
+def test_every_engine_climbs_the_ladder():
+    engines = re.findall(r"^extern const sd_mobility_engine (\w+);", (TOP / "PKG-STOKESDYN/core/stokes/mobility/sd_mobility.h").read_text(), re.M)
+    placed = (TOP / "unittest/core/stokes/mobility/engines.h").read_text()
+    assert len(engines) >= 5
+    assert not [name for name in engines if f"engine = &{name};" not in placed]
+
+
 def test_a_name_of_a_function_stands_in_one_file():
     """So that grep, a breakpoint and a profile mean one thing."""
     found = {}

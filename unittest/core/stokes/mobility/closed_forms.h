@@ -185,4 +185,12 @@ static inline void slit_tensor(const double xi[3], double a, const double xj[3],
     }
 }
 
+/* The same where the mean flow along the walls is stopped by a pressure gradient: u = z (H - z)/(2 eta) is the flow of a gradient of
+ * -1, and by reciprocity the flux that a force makes is its velocity at the sphere, over the section S. */
+static inline void stop_flux(const double xi[3], double a, const double xj[3], double b, double eta, double edge, double H, double M[9])
+{
+  const double of_i = xi[2] * (H - xi[2]) - a * a / 3.0, of_j = xj[2] * (H - xj[2]) - b * b / 3.0;
+  for (int d = 0; d < 2; d++) M[4 * d] -= 3.0 / (eta * edge * edge * H * H * H) * of_i * of_j;
+}
+
 #endif

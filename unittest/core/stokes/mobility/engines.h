@@ -45,13 +45,15 @@ typedef struct climber {
   /* fills law, engine, reach and splitting */
   void (*choose)(how *h, const cast *s);
   unsigned can;
-  /* of a velocity over that of the pushed sphere alone; and what rounding adds where sums are of floats, else 0 */
+  /* of a velocity over that of the pushed sphere alone; and what rounding adds where sums are of floats, else 0, and the splitting
+   * must say the same */
   double tolerance, rounding;
   /* periodic box: edge and tilts; 0: none. wall: z = -0.3, the fluid is above; with a box this is periodic along it alone. height:
-   * of a second wall above that one; 0: none */
+   * of a second wall above that one; 0: none. no_flux: nothing flows along both */
   double edge, tilt[3];
   int wall;
   double height;
+  int no_flux;
   /* cut-off, or range of a taper: no pair beyond it */
   double cut;
   sd_taper taper;
@@ -161,7 +163,8 @@ static void choose_two_levels(how *h, const cast *s)
 static void choose_slab(how *h, const cast *s)
 {
   const sd_wall wall = wall_of(h->row);
-  const sd_slab_walls walls = h->row->height > 0.0 ? sd_slab_slit(2, wall_at, wall_at + h->row->height, 0) : sd_slab_floor(&wall);
+  const sd_slab_walls walls = h->row->height > 0.0 ? sd_slab_slit(2, wall_at, wall_at + h->row->height, h->row->no_flux)
+                                                     : sd_slab_floor(&wall);
   h->engine = &sd_mobility_slab;
   h->box = box_of(h->row, s);
   assert_int_equal(slab_choose(&walls, &h->box, s->x, s->a, s->n, tolerance_of(h->row), &h->slab), SD_OK);
@@ -189,6 +192,7 @@ static inline void place_on(placed *p, const climber *row, const cast *s, rank *
   p->h.row = row;
   p->h.law.wall = wall_of(row);
   row->choose(&p->h, s);
+  assert_int_equal(p->h.first.single, row->rounding > 0.0);
   p->copies = (periodic){.n = s->n, .ewald = p->h.first};
   if (p->h.box.periodic) periodic_images(&p->copies, s->x, s->a, s->w);
   const int total = p->h.box.periodic ? p->copies.n_all : s->n;
@@ -268,6 +272,8 @@ static const climber climbers[] = {
      .edge = 13, .tilt = {4, -3, 2}, .ratio = 1},
     {.name = "Ewald, noise", .choose = choose_positive, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR | DIVIDES, .tolerance = 1e-5,
      .edge = 13, .ratio = 1},
+    {.name = "Ewald, floats", .choose = choose_one_level, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR, .tolerance = 1e-3,
+     .rounding = 1e-6, .edge = 13, .ratio = 1},
     {.name = "Ewald, open", .choose = choose_one_level, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR, .tolerance = 1e-3,
      .rounding = 1e-6, .ratio = 1},
     {.name = "Ewald, wall", .choose = choose_one_level, .can = OVERLAPS | POSITIVE | RANKS | FAR, .tolerance = 1e-3, .wall = 1, .ratio = 1},
@@ -279,6 +285,8 @@ static const climber climbers[] = {
      .ratio = 1},
     {.name = "slab, slit", .choose = choose_slab, .can = OVERLAPS | POSITIVE | RANKS | FAR, .tolerance = 1e-5, .edge = 13, .wall = 1,
      .height = 16, .ratio = 1},
+    {.name = "slab, no flux", .choose = choose_slab, .can = OVERLAPS | POSITIVE | RANKS | FAR, .tolerance = 1e-5, .edge = 13, .wall = 1,
+     .height = 16, .no_flux = 1, .ratio = 1},
     {.name = "shells, all pairs", .choose = choose_all_pairs, .can = TORQUES | POSITIVE | FAR, .tolerance = 2e-3, .ratio = 1, .shell = 12},
     {.name = "shells, wall", .choose = choose_all_pairs, .can = TORQUES | POSITIVE | FAR, .tolerance = 2e-3, .wall = 1, .ratio = 1,
      .shell = 12},
