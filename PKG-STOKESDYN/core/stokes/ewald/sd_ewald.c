@@ -28,7 +28,7 @@ static int sound(const sd_ewald_box *b, const sd_ewald_class *s, double toleranc
 }
 
 /* How H falls: as a Gaussian, or to 0 at a band (sd_radial.h). For the same error a band needs less than
- * half of the grid. The functions of a Gaussian are known in closed form, which an open box, two levels
+ * half of the grid. The functions of a Gaussian are known in closed form, which walls, two levels
  * (sd_ewald_levels.h) and the tightest tolerances want. */
 typedef enum { GAUSSIAN, BAND } fall;
 
@@ -37,7 +37,7 @@ static const double LARGEST = 1.5;
 
 static fall fall_for(const sd_ewald *e)
 {
-  return e->box.periodic && e->tolerance >= 1e-10 ? BAND : GAUSSIAN;
+  return e->tolerance >= 1e-10 ? BAND : GAUSSIAN;
 }
 
 /* What a splitting must know of the spheres and of what is asked */
@@ -101,11 +101,12 @@ static double gaussian_spacing(double xi, double y)
 /* The range of a band in spacings, and its waves over the shortest of the grid. From errors that were
  * measured over ranges, bands and windows: those of a Gaussian with windows of as many points, whose range
  * is 1.61 spacings times the digits. Windows that are differentiated mistake more, and torques leave more
- * beyond the range. */
-static double band_spacings(const splitting *by, double t)
+ * beyond the range; in an open box no mean makes up for the cut-off. */
+static double band_spacings(const sd_ewald_box *box, const splitting *by, double t)
 {
-  const double digits = log10(1.0 / t), more = by->slopes ? 0.18 + 0.1 * digits : 0.0;
-  return 0.94 + (0.9 + 0.007 * digits) * digits + more;
+  const double digits = log10(1.0 / t), open = box->periodic ? 0.0 : 0.07;
+  const double more = by->slopes ? 0.18 + 0.1 * digits : 0.0;
+  return 0.94 + (0.9 + 0.007 * digits) * digits + more + open;
 }
 
 static double band_over_shortest(const splitting *by, double t)
@@ -117,7 +118,7 @@ static double band_over_shortest(const splitting *by, double t)
 static double y_of(const sd_ewald_box *box, const splitting *by, double t)
 {
   if (by->fall == GAUSSIAN) return gaussian_y(box, t);
-  return sqrt(0.5 * SD_PI * band_over_shortest(by, t) * band_spacings(by, t));
+  return sqrt(0.5 * SD_PI * band_over_shortest(by, t) * band_spacings(box, by, t));
 }
 
 static int window_points(double t)
@@ -134,10 +135,10 @@ static double least_range(const sd_ewald *e, const splitting *by, double y)
 
 /* What two walls do to a wave together falls like exp(-k gap), and the grid must have the waves where that
  * is not small. Found by errors in narrow slits, where without it they were 5 times the tolerance. */
-static double range_in_gap(const splitting *by, double t, double y)
+static double range_in_gap(const sd_ewald_box *box, const splitting *by, double t, double y)
 {
   const double spacing = 3.0 * by->gap / (log(1.0 / t) + 3.0);
-  const double range = by->fall == BAND ? band_spacings(by, t) * spacing : 1.4 * by->gap;
+  const double range = by->fall == BAND ? band_spacings(box, by, t) * spacing : 1.4 * by->gap;
   return fmax(range, fmax(y * by->spheres.largest / by->most, 2.0 * by->spheres.largest));
 }
 
@@ -151,7 +152,7 @@ static void split(sd_ewald *e, const splitting *by, double *y)
   for (int k = 0; k < 6; k++) {
     *y = y_of(&e->box, by, t);
     e->range = fmax(natural_range(&e->box, by, log10(1.0 / t)), least_range(e, by, *y));
-    if (by->gap > 0.0) e->range = fmin(e->range, range_in_gap(by, t, *y));
+    if (by->gap > 0.0) e->range = fmin(e->range, range_in_gap(&e->box, by, t, *y));
     e->xi = *y / e->range;
     if (k < 5) t = tightened(by, e->tolerance, e->xi * *y);
   }
@@ -159,7 +160,7 @@ static void split(sd_ewald *e, const splitting *by, double *y)
   /* where windows are differentiated, their jump at the ends must be smaller; twice for unlike radii */
   e->beta = (by->fall == BAND ? by->equal : !by->slopes) ? 2.25 * e->points : 2.42 * e->points;
   e->reach = e->range;
-  e->spacing = by->fall == BAND ? e->range / band_spacings(by, t) : gaussian_spacing(e->xi, *y);
+  e->spacing = by->fall == BAND ? e->range / band_spacings(&e->box, by, t) : gaussian_spacing(e->xi, *y);
 }
 
 sd_status sd_ewald_lay_grid(const sd_ewald_box *box, double h, int points, double *spacing, int *grid)
@@ -190,8 +191,9 @@ static void start(sd_ewald *e, const sd_ewald_box *box, double count, double tol
 /* Numbers of grid points are few: what the next of them is finer than asked for shortens the range. */
 static void end_at_band(sd_ewald *e, const splitting *by, double y)
 {
-  double h = 0.0;
-  for (int d = 0; d < 3; d++) h = fmax(h, sd_ewald_edge_length(&e->box, d) / e->grid[d]);
+  double h = e->box.periodic ? 0.0 : e->spacing;
+  for (int d = 0; d < 3 && e->box.periodic; d++)
+    h = fmax(h, sd_ewald_edge_length(&e->box, d) / e->grid[d]);
   e->range = fmax(fmin(1.0, h / e->spacing) * e->range, least_range(e, by, y));
   e->reach = e->range;
   e->xi = y / e->range;

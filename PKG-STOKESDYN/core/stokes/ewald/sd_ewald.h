@@ -6,7 +6,7 @@
  *   wave part = 1/V sum_{k != 0} exp(ik.r) H(k)/(eta k^2) (I - kk/k^2) g_i g_j
  *   H = (1 + x - a_ref^2 k^2/3) exp(-x),   x = k^2/(4 xi^2),   g_i = 1 - (a_i^2 - a_ref^2) k^2/6
  *
- * In a periodic box x grows faster than that, so that H ends at a wave (sd_radial.h), which
+ * Without a wall x grows faster than that, so that H ends at a wave (sd_radial.h), which
  * needs less than half of the grid. H is >= 0 with either, and draws noise; and the larger x is, the
  * more positive is the near part.
  *
@@ -129,7 +129,7 @@ void sd_ewald_count(sd_ewald_sizes *s, double a);
 /* The rule, for a box and its spheres.
  *   width       3, or 6 with torques
  *   tolerance   1e-13 ... 1e-1; outside of it the nearest of these is taken
- * Waves end at a band in a periodic box, at 1e-10 and looser tolerances.
+ * Waves end at a band at 1e-10 and looser tolerances.
  * SD_OK, SD_ENOTFINITE for a box without volume, numbers that are not finite or a tolerance that
  * is not > 0, SD_ENOMEMORY for a grid of more than 2^31 points. */
 sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,

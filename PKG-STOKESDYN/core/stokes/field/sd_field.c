@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "sd_constants.h"
+#include "sd_ewald_rule_internal.h"
 #include "sd_field_internal.h"
 #include "sd_room.h"
 
@@ -31,7 +32,7 @@ static double all_points(const sd_field_grid *g)
  * equal; a_ref 0 makes a point's window a plain one. A point does not average over a sphere as a
  * sphere does, so the same splitting leaves it a larger error: 0.5 makes up for that, and 0.3 where it is
  * small and windows count more. With torques the rule is stricter by 3, for the sake of angular
- * velocities, which points do not have. */
+ * velocities, which points do not have. Waves fall as a Gaussian, whose errors at points these are. */
 static sd_status choose_open(const sd_ewald_box *box, const sd_ewald_sizes *those, int width,
                              double points, double tolerance, sd_ewald *out)
 {
@@ -47,8 +48,9 @@ static sd_status choose_open(const sd_ewald_box *box, const sd_ewald_sizes *thos
     all->fourths = all->squares * all->largest * all->largest;
   }
   const double tighter = width == 6 ? 0.9 : tolerance > 5e-4 ? 0.5 : 0.3;
-  const sd_status status = sd_ewald_choose(box, &sizes, width, tighter * tolerance, out);
-  out->single = 0;
+  int some;
+  sd_status status = sd_ewald_prepare(box, all, tighter * tolerance, out, &some);
+  if (some) status = sd_ewald_gaussian(box, all, width, out->tolerance, out);
   out->a_ref = 0.0;
   return status;
 }

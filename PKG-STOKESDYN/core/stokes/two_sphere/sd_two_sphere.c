@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sd_lagrange.h"
 #include "sd_two_sphere_near.h"
 #include "sd_two_sphere_table_internal.h"
 
@@ -132,13 +133,7 @@ static int stencil(double at, int n, double w[STENCIL])
   int first = (int) at - STENCIL / 2 + 1;
   if (first > n - STENCIL) first = n - STENCIL;
   if (first < 0) first = 0;
-  double below[STENCIL], above = 1.0;
-  below[0] = 1.0;
-  for (int k = 1; k < STENCIL; k++) below[k] = below[k - 1] * (at - first - (k - 1));
-  for (int k = STENCIL - 1; k >= 0; k--) {
-    w[k] = below[k] * above * inverse[k];
-    above *= at - first - k;
-  }
+  sd_lagrange(at - first, STENCIL, inverse, w);
   return first;
 }
 

@@ -157,6 +157,20 @@ static void few_spheres_cost_more_than_all_pairs(void **state)
     }
 }
 
+/* 10^5 spheres at a volume fraction of 0.2. As Gaussians waves had 100 points a side and a range of 15.5. */
+static void waves_end_at_a_band(void **state)
+{
+  (void) state;
+  const double n = 1e5, edge = cbrt(n * 4.0 / 3.0 * SD_PI / 0.2);
+  const sd_ewald_box box = {.edge = {edge, edge, edge}};
+  const sd_ewald_sizes sizes = {.all = {n, n, n, 1.0}};
+  sd_ewald how;
+  assert_int_equal(sd_ewald_choose(&box, &sizes, 3, 3e-7, &how), SD_OK);
+  assert_true(how.band > 0.0 && how.grid[0] <= 84 && how.range < 13.5);
+  assert_int_equal(sd_ewald_choose(&box, &sizes, 3, 1e-11, &how), SD_OK);
+  assert_true(how.band == 0.0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -164,6 +178,7 @@ int main(void)
       cmocka_unit_test(a_cloud_that_moves_as_a_whole_keeps_its_tables),
       cmocka_unit_test(a_box_above_a_wall_goes_along_it_alone),
       cmocka_unit_test(few_spheres_cost_more_than_all_pairs),
+      cmocka_unit_test(waves_end_at_a_band),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,7 +6,12 @@
 #include <string.h>
 
 #include "sd_constants.h"
+#include "sd_lagrange.h"
 #include "sd_window.h"
+
+/* What is shared depends on the distance alone and has no wave beyond that of the grid: it is sampled at so
+ * many distances in a spacing, and polynomials go through so many of these. */
+enum { FINER = 8, NODES = 12 };
 
 /* Three directions: n points of the large grid, of which m from `first` on are of the transform's;
  * periods of the transforms in points. A direction that is even or odd has half of each. */
@@ -14,6 +19,8 @@ typedef struct {
   const sd_padded *k;
   int n[3], m[3], first[3], n_period[3], m_period[3];
   double *taper[3], *inverse[3];
+  /* what is shared at equal steps of the distance, [SD_PADDED_NUMBERS] each; of sd_lagrange.h */
+  double *radial, lagrange[NODES];
   /* [n][SD_PADDED_NUMBERS]; one kernel [n]; the same of the transform's grid [m] */
   double *number, *field, *kept;
 } workspace;
@@ -44,9 +51,36 @@ static void offset(const workspace *s, int x, int y, int z, double R[3])
   R[2] = z * h;
 }
 
-static void sample(workspace *s)
+/* The first is half a polynomial before distance 0, where all is as it is behind it. */
+static int tabulate(workspace *s)
 {
   const sd_padded *k = s->k;
+  const double h = k->ewald->spacing;
+  double R[3];
+  offset(s, s->n[0], s->n[1], s->n[2], R);
+  R[0] = fmax(fabs(R[0]), fabs(k->start) + s->n[0] * h);
+  const double most = sqrt(R[0] * R[0] + R[1] * R[1] + R[2] * R[2]);
+  const long many = (long) ceil(most / h * FINER) + NODES;
+  s->radial = calloc((size_t) many * SD_PADDED_NUMBERS, sizeof(double));
+  for (long m = 0; m < many && s->radial; m++)
+    k->numbers(k->ewald, fabs((double) (m + 1 - NODES / 2)) * h / FINER, s->radial + m * SD_PADDED_NUMBERS);
+  sd_lagrange_inverse(NODES, s->lagrange);
+  return s->radial != NULL;
+}
+
+static void numbers_at(const workspace *s, double distance, double *number)
+{
+  const double at = distance / s->k->ewald->spacing * FINER;
+  const long first = (long) at;
+  const double *from = s->radial + first * SD_PADDED_NUMBERS;
+  double weight[NODES];
+  sd_lagrange(at - (double) first + NODES / 2 - 1, NODES, s->lagrange, weight);
+  for (int m = 0; m < NODES; m++)
+    for (int p = 0; p < SD_PADDED_NUMBERS; p++) number[p] += weight[m] * from[m * SD_PADDED_NUMBERS + p];
+}
+
+static void sample(workspace *s)
+{
   double *out = s->number, R[3];
   for (int x = 0; x < s->n[0]; x++)
     for (int y = 0; y < s->n[1]; y++)
@@ -55,7 +89,7 @@ static void sample(workspace *s)
         memset(out, 0, SD_PADDED_NUMBERS * sizeof(double));
         if (!(weight > 1e-17)) continue;
         offset(s, x, y, z, R);
-        k->numbers(k->ewald, sqrt(R[0] * R[0] + R[1] * R[1] + R[2] * R[2]), out);
+        numbers_at(s, sqrt(R[0] * R[0] + R[1] * R[1] + R[2] * R[2]), out);
         for (int p = 0; p < SD_PADDED_NUMBERS; p++) out[p] *= weight;
       }
 }
@@ -108,7 +142,7 @@ static int wave_of(int l, int period)
  * the filter is nothing there are only rounding errors, which that would blow up. */
 static void deconvolve(const workspace *s)
 {
-  const double most = 4.0 * s->k->xi * s->k->xi * 37.0; /* exp(-37) = 1e-16 */
+  const double most = s->k->last * s->k->last;
   double *field = s->field, unit[3], all = 1.0;
   for (int d = 0; d < 3; d++) {
     unit[d] = 2.0 * SD_PI / (s->n_period[d] * s->k->ewald->spacing);
@@ -200,6 +234,7 @@ static void pa_give_back(workspace *s)
     free(s->taper[d]);
     free(s->inverse[d]);
   }
+  free(s->radial);
   free(s->number);
   fftw_free(s->field);
   fftw_free(s->kept);
@@ -212,6 +247,7 @@ sd_status sd_padded_table(const sd_padded *k, const int *size, const int *y, con
 {
   workspace s = {.k = k};
   int ok = pa_make_room(&s, size);
+  ok = ok && tabulate(&s);
   if (ok) sample(&s);
   for (int c = 0; c < k->kernels && ok; c++) {
     pa_fill(&s, c);

@@ -10,6 +10,8 @@
 #ifndef SD_PADDED_H
 #define SD_PADDED_H
 
+#include <math.h>
+
 #include "sd_ewald.h"
 #include "sd_status.h"
 
@@ -21,10 +23,10 @@ enum { SD_PADDED_NUMBERS = 4 };
 /* Several kernels of an offset R, each even or odd in each direction. */
 typedef struct {
   const sd_ewald *ewald;
-  /* the largest xi of what is sampled, beyond whose waves there are only rounding errors */
-  double xi;
+  /* the wave beyond which there are only rounding errors, 1/length */
+  double last;
   int kernels;
-  /* what the kernels share at a distance: number [SD_PADDED_NUMBERS] */
+  /* what the kernels share at a distance, even and as smooth as they are: number [SD_PADDED_NUMBERS] */
   void (*numbers)(const sd_ewald *e, double distance, double *number);
   /* one of them; with a minus if it is odd in two directions, which two sine transforms bring */
   double (*value)(const sd_ewald *e, int kernel, const double *number, const double *R);
@@ -35,6 +37,12 @@ typedef struct {
   int across;
   double start;
 } sd_padded;
+
+/* exp(-37) = 1e-16 */
+static inline double sd_padded_last_of(double xi)
+{
+  return 2.0 * xi * sqrt(37.0);
+}
 
 /* size [3]: points of the transform each way, even; y, z [2]: first and end of the waves >= 0 that
  * are wanted of the last two; table [y][size 0/2 + 1][kernels][z], out; across: [kernels][re, im][z].

@@ -44,7 +44,7 @@ sd_status sd_image_kernel(const sd_ewald *e, const int *size, const int *y, cons
       [SD_IMAGE_L2Z] = {0, 0, 1}, [SD_IMAGE_L1] = {0, 1, 0},  [SD_IMAGE_L2] = {0, 0, 1}};
   const sd_padded images = {
       .ewald = e,
-      .xi = e->images.xi,
+      .last = sd_padded_last_of(e->images.xi),
       .kernels = SD_IMAGE_KERNELS,
       .numbers = image_numbers,
       .value = value,

@@ -133,20 +133,22 @@ static void bessel(double x, double *j)
 }
 
 /* Waves in the middles of equal steps. H is even and smooth, so that the sum converges faster than any
- * power, but for its end, where it is about exp(-K R) and falls to 0. */
+ * power, but for its end, where it is about exp(-K R) and falls to 0. So many at least: with the step dk
+ * functions of r repeat with the period 2 pi/dk, which is kept some ranges beyond r. */
 enum { WAVES = 256 };
 
-static double wave_of_band(const sd_ewald *e, int s)
+static double wave_of_band(const sd_ewald *e, int s, int waves)
 {
-  return (s + 0.5) * e->band / WAVES;
+  return (s + 0.5) * e->band / waves;
 }
 
 static void radial_of_band(const sd_ewald *e, double r, double *value)
 {
-  const double unit = e->band / WAVES / (2.0 * SD_PI * SD_PI);
+  const int waves = (int) fmax(WAVES, ceil(e->band * (r + 8.0 * e->range) / (2.0 * SD_PI)));
+  const double unit = e->band / waves / (2.0 * SD_PI * SD_PI);
   for (int f = 0; f < SD_RADIALS; f++) value[f] = 0.0;
-  for (int s = 0; s < WAVES; s++) {
-    const double k = wave_of_band(e, s), k2 = k * k;
+  for (int s = 0; s < waves; s++) {
+    const double k = wave_of_band(e, s, waves), k2 = k * k;
     double power = unit * screen_of_band(e, k2), j[3];
     bessel(k * r, j);
     for (int n = 0; n < 3; n++, power *= k2) {
@@ -166,7 +168,7 @@ static void tail_of_band(const sd_ewald *e, double *tail)
   tail[1] = -2.0 / 3.0;
   tail[2] = 0.0;
   for (int s = 0; s < WAVES; s++) {
-    const double k = wave_of_band(e, s), k2 = k * k;
+    const double k = wave_of_band(e, s, WAVES), k2 = k * k;
     double power = unit * screen_of_band(e, k2), j[3];
     bessel(k * e->range, j);
     for (int n = 0; n < 3; n++, power *= k2) tail[n] += power * j[1];

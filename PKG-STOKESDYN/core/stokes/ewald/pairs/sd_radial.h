@@ -11,7 +11,7 @@
  *
  * all over eta; h = r/R, b = (a^2 - a_ref^2)/6, j_l spherical Bessel functions.
  *
- * Waves that end at a band K, of periodic boxes, have the integrals themselves, with
+ * Waves that end at a band K have the integrals themselves, with
  *
  *   H = (1 + x - a_ref^2 k^2/3) exp(-x),   x = R (K - sqrt(K^2 - k^2)),   0 from K on
  *

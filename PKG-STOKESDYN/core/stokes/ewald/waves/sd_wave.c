@@ -72,6 +72,13 @@ static sd_status periodic_table(sd_wave *w, const sd_ewald *e, int y1)
 /* I_0, J_0/r^2 of sd_radial.h, less what a smoother splitting has taken */
 static void wa_numbers(const sd_ewald *e, double distance, double *number)
 {
+  if (e->band > 0.0) {
+    double value[SD_RADIALS];
+    sd_radial(e, distance, value);
+    number[0] = value[SD_I0];
+    number[1] = value[SD_J0];
+    return;
+  }
   const sd_filter filter[2] = {{e->xi, e->a_ref}, {e->taken, e->a_ref}};
   for (int l = 0; l < (e->taken > 0.0 ? 2 : 1); l++) {
     const sd_filtered f = sd_filtered_at(filter + l, distance * distance, 3, 0);
@@ -94,8 +101,9 @@ static double wa_value(const sd_ewald *e, int kernel, const double *number, cons
 static sd_padded open_kernel(const sd_ewald *e)
 {
   static const int odd[6][3] = {[3] = {1, 1, 0}, [4] = {1, 0, 1}, [5] = {0, 1, 1}};
+  const double last = e->band > 0.0 ? e->band : sd_padded_last_of(e->xi);
   return (sd_padded){
-      .ewald = e, .xi = e->xi, .kernels = 6, .numbers = wa_numbers, .value = wa_value, .odd = odd};
+      .ewald = e, .last = last, .kernels = 6, .numbers = wa_numbers, .value = wa_value, .odd = odd};
 }
 
 static sd_status image_table(sd_wave *w, const sd_ewald *e, const int *y, const int *z)
