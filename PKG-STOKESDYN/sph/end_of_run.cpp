@@ -22,7 +22,7 @@ static uint64_t mixed(uint64_t hash, uint64_t bits)
 }
 
 /* A number from -1 to 1 that is k's alone */
-static double weight_of(uint64_t k)
+static double weight_of_number(uint64_t k)
 {
   return (double) (int64_t) mixed(mixed(k, ODD), k) * 0x1p-63;
 }
@@ -44,7 +44,7 @@ void EndOfRun::record(int groupbit)
     }
     hashes += hash;
     for (int k = 0; k < 5; k++) {
-      const double part = weight_of(5 * tag + k) * where[k];
+      const double part = weight_of_number(5 * tag + k) * where[k];
       mine[0] += part;
       mine[1] += std::fabs(part);
     }

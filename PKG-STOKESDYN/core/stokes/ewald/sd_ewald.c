@@ -6,6 +6,7 @@
 #include "sd_constants.h"
 #include "sd_ewald_cost.h"
 #include "sd_ewald_rule_internal.h"
+#include "sd_ewald_splitting_internal.h"
 
 static const double TIGHTEST = 1e-13, LOOSEST = 1e-1;
 
@@ -27,11 +28,6 @@ static int sound(const sd_ewald_box *b, const sd_ewald_class *s, double toleranc
   return ok && isfinite(sd_ewald_volume(b)) && sd_ewald_volume(b) > 0.0;
 }
 
-/* How H falls: as a Gaussian, or to 0 at a band (sd_radial.h). For the same error a band needs less than
- * half of the grid. The functions of a Gaussian are known in closed form, which walls, two levels
- * (sd_ewald_levels.h) and the tightest tolerances want. */
-typedef enum { GAUSSIAN, BAND } fall;
-
 /* xi times the largest radius where the parts need not be positive */
 static const double LARGEST = 1.5;
 
@@ -39,20 +35,6 @@ static fall fall_for(const sd_ewald *e)
 {
   return e->tolerance >= 1e-10 ? BAND : GAUSSIAN;
 }
-
-/* What a splitting must know of the spheres and of what is asked */
-typedef struct {
-  fall fall;
-  sd_ewald_class spheres;
-  /* all radii are alike; windows are differentiated, for unlike radii and for torques */
-  int width, equal, slopes;
-  /* that of H; of xi times the largest radius */
-  double a_ref, most;
-  /* in a slab, else 0: the longest range that saves anything; gap of sd_ewald_choose_in_slab; the range
-   * that is tried over that of a cube; is the slab a tower? */
-  double farthest, gap, times;
-  int tall;
-} splitting;
 
 static splitting splitting_for(fall how, const sd_ewald_class *s, int width, double most)
 {
@@ -77,56 +59,6 @@ static double natural_range(const sd_ewald_box *box, const splitting *by, double
   return fmin(range, hypot(box->edge[0], hypot(box->edge[1], box->edge[2])));
 }
 
-/* The tolerance after what large spheres lose: those larger than 1/xi have large wave and near parts
- * that cancel. y = xi range, which is smaller for a band, and its windows mistake more. */
-static double tightened(const splitting *by, double tolerance, double xi_y)
-{
-  const double part = by->fall == BAND ? 0.1 : 0.05;
-  const double loss = by->equal ? 0.0 : part * pow(2.0 * xi_y * by->spheres.largest, 3.0);
-  return tolerance / fmax(1.0, loss) / (by->width == 6 ? 3.0 : 1.0);
-}
-
-/* y of a Gaussian, whose near part falls as exp(-y^2) */
-static double gaussian_y(const sd_ewald_box *box, double t)
-{
-  return sqrt(log(1.0 / (box->periodic ? t : 0.7 * t))); /* no mean makes up for the cut-off */
-}
-
-/* The largest spacing of its waves */
-static double gaussian_spacing(double xi, double y)
-{
-  return SD_PI / (2.2 * xi * y);
-}
-
-/* The range of a band in spacings, and its waves over the shortest of the grid. From errors that were
- * measured over ranges, bands and windows: those of a Gaussian with windows of as many points, whose range
- * is 1.61 spacings times the digits. Windows that are differentiated mistake more, and torques leave more
- * beyond the range; in an open box no mean makes up for the cut-off. */
-static double band_spacings(const sd_ewald_box *box, const splitting *by, double t)
-{
-  const double digits = log10(1.0 / t), open = box->periodic ? 0.0 : 0.07;
-  const double more = by->slopes ? 0.18 + 0.1 * digits : 0.0;
-  return 0.94 + (0.9 + 0.007 * digits) * digits + more + open;
-}
-
-static double band_over_shortest(const splitting *by, double t)
-{
-  return (by->slopes ? 0.98 : 0.96) - 0.01 * log10(1.0 / t);
-}
-
-/* H is like that of a Gaussian for long waves: y^2 is half of band times range. */
-static double y_of(const sd_ewald_box *box, const splitting *by, double t)
-{
-  if (by->fall == GAUSSIAN) return gaussian_y(box, t);
-  return sqrt(0.5 * SD_PI * band_over_shortest(by, t) * band_spacings(box, by, t));
-}
-
-static int window_points(double t)
-{
-  const int points = (int) ceil(2.0 + log10(1.0 / t) - 1e-9);
-  return points < 4 ? 4 : points > SD_EWALD_MOST_POINTS ? SD_EWALD_MOST_POINTS : points;
-}
-
 /* Spheres that overlap are within the range. */
 static double least_range(const sd_ewald *e, const splitting *by, double y)
 {
@@ -138,7 +70,7 @@ static double least_range(const sd_ewald *e, const splitting *by, double y)
 static double range_in_gap(const sd_ewald_box *box, const splitting *by, double t, double y)
 {
   const double spacing = 3.0 * by->gap / (log(1.0 / t) + 3.0);
-  const double range = by->fall == BAND ? band_spacings(box, by, t) * spacing : 1.4 * by->gap;
+  const double range = by->fall == BAND ? sd_splitting_band_spacings(box, by, t) * spacing : 1.4 * by->gap;
   return fmax(range, fmax(y * by->spheres.largest / by->most, 2.0 * by->spheres.largest));
 }
 
@@ -148,19 +80,18 @@ static void split(sd_ewald *e, const splitting *by, double *y)
 {
   e->largest = by->spheres.largest;
   e->a_ref = by->a_ref;
-  double t = tightened(by, e->tolerance, 0.0);
+  double t = sd_splitting_tightened(by, e->tolerance, 0.0);
   for (int k = 0; k < 6; k++) {
-    *y = y_of(&e->box, by, t);
+    *y = sd_splitting_y(&e->box, by, t);
     e->range = fmax(natural_range(&e->box, by, log10(1.0 / t)), least_range(e, by, *y));
     if (by->gap > 0.0) e->range = fmin(e->range, range_in_gap(&e->box, by, t, *y));
     e->xi = *y / e->range;
-    if (k < 5) t = tightened(by, e->tolerance, e->xi * *y);
+    if (k < 5) t = sd_splitting_tightened(by, e->tolerance, e->xi * *y);
   }
-  e->points = window_points(t) + by->tall;
-  /* where windows are differentiated, their jump at the ends must be smaller; twice for unlike radii */
-  e->beta = (by->fall == BAND ? by->equal : !by->slopes) ? 2.25 * e->points : 2.42 * e->points;
+  e->points = sd_splitting_points_of(by, e->tolerance, e->xi * *y, t) + by->tall;
+  e->beta = sd_splitting_beta(by) * e->points;
   e->reach = e->range;
-  e->spacing = by->fall == BAND ? e->range / band_spacings(&e->box, by, t) : gaussian_spacing(e->xi, *y);
+  e->spacing = sd_splitting_spacing(e, by, t, *y);
 }
 
 sd_status sd_ewald_lay_grid(const sd_ewald_box *box, double h, int points, double *spacing, int *grid)
@@ -224,19 +155,19 @@ sd_status sd_ewald_gaussian_at(const sd_ewald_box *box, const sd_ewald_class *s,
   splitting by = splitting_for(GAUSSIAN, s, width, LARGEST);
   by.equal = 0; /* also if they are: there are others */
   start(out, box, s->count, tolerance);
-  double t = tolerance, y = gaussian_y(box, t);
+  double t = tolerance, y = sd_splitting_gaussian_y(box, t);
   for (int k = 0; k < 6; k++) {
-    t = tightened(&by, tolerance, times / s->largest * y);
-    y = gaussian_y(box, t);
+    t = sd_splitting_tightened(&by, tolerance, times / s->largest * y);
+    y = sd_splitting_gaussian_y(box, t);
     times = fmin(times, 0.5 * y);
   }
   out->largest = s->largest;
   out->a_ref = by.a_ref;
   out->xi = times / s->largest;
   out->range = out->reach = y / out->xi;
-  out->points = window_points(t);
+  out->points = sd_splitting_points(t);
   out->beta = 2.42 * out->points;
-  return sd_ewald_lay_grid(box, gaussian_spacing(out->xi, y), out->points, &out->spacing, out->grid);
+  return sd_ewald_lay_grid(box, sd_splitting_gaussian_spacing(out->xi, y), out->points, &out->spacing, out->grid);
 }
 
 sd_status sd_ewald_prepare(const sd_ewald_box *box, const sd_ewald_class *all, double tolerance,
@@ -319,7 +250,7 @@ static sd_status level_in_slab(sd_ewald *e, splitting *by, double *y)
     by->a_ref = sd_ewald_six_digits(0.8 * e->range / y_of_fall);
     split(e, by, &y_of_fall);
   }
-  *y = sqrt(log(1.0 / tightened(by, e->tolerance, e->xi * y_of_fall)));
+  *y = sqrt(log(1.0 / sd_splitting_tightened(by, e->tolerance, e->xi * y_of_fall)));
   const sd_status status = sd_ewald_lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
   if (status == SD_OK && by->fall == BAND) end_at_band(e, by, y_of_fall);
   return status;

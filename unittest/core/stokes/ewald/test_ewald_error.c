@@ -114,6 +114,36 @@ static void waves_that_end_at_a_band_need_half_the_grid(void **state)
   }
 }
 
+/* Equal spheres with torques, thin and dense: velocities are right to the tolerance over F/(6 pi a), spins over T/(8 pi a^3), and
+ * neither rule nor window is much better than asked. */
+static void torques_are_no_better_than_asked(void **state)
+{
+  (void) state;
+  const double phi[] = {0.02, 0.2, 0.5};
+  for (int k = 0; k < 3; k++)
+    for (int digits = 2; digits <= 6; digits += 2) {
+      const double tolerance = pow(10.0, -digits);
+      uint64_t seed = 11;
+      scene s = {.box = {.periodic = 1}};
+      sd_ewald how;
+      double u[6 * N], v[6 * N], off[2] = {0.0}, scale[2] = {0.0}, error[2];
+      for (int d = 0; d < 3; d++) s.box.edge[d] = cbrt(4.0 / 3.0 * SD_PI * N / phi[k]);
+      for (int i = 0; i < N; i++) s.a[i] = 1.0;
+      for (int i = 0; i < 3 * N; i++) s.x[i] = uniform(&seed, 0, s.box.edge[0]), s.F[i] = uniform(&seed, -1, 1);
+      velocities(&s, 6, tolerance, &how, u);
+      velocities(&s, 6, 0.01 * tolerance, &how, v);
+      for (int i = 0; i < 6 * N; i++) {
+        const int spin = i % 6 >= 3;
+        off[spin] += pow(u[i] - v[i], 2);
+        scale[spin] += pow(s.F[i % (3 * N)] / ((spin ? 8.0 : 6.0) * SD_PI), 2);
+      }
+      for (int spin = 0; spin < 2; spin++) error[spin] = sqrt(off[spin] / scale[spin]) / tolerance;
+      if (getenv("STOKESDYN_SHOW")) printf("phi %g digits %d: %.2f %.2f\n", phi[k], digits, error[0], error[1]);
+      assert_true(error[0] < 1.0 && error[1] < 1.0);
+      assert_true(fmax(error[0], error[1]) > 0.2);
+    }
+}
+
 /* Equal forces add up what the range cuts off; its mean is put back. Without that the error is three times the tolerance. */
 static void equal_forces_are_no_worse(void **state)
 {
@@ -141,6 +171,7 @@ int main(void)
       cmocka_unit_test(the_predicted_error_is_the_measured_one),
       cmocka_unit_test(waves_that_end_at_a_band_have_the_sum_of_a_gaussian),
       cmocka_unit_test(waves_that_end_at_a_band_need_half_the_grid),
+      cmocka_unit_test(torques_are_no_better_than_asked),
       cmocka_unit_test(equal_forces_are_no_worse),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,46 @@
+/* What a tolerance asks of a splitting: how far the near part must reach, how fine the grid is, how wide the
+ * windows are, in measures of each other. Between the parts of the rule of sd_ewald.h. */
+#ifndef SD_EWALD_SPLITTING_INTERNAL_H
+#define SD_EWALD_SPLITTING_INTERNAL_H
+
+#include "sd_ewald.h"
+
+/* How H falls: as a Gaussian, or to 0 at a band (sd_radial.h). For the same error a band needs less than
+ * half of the grid. The functions of a Gaussian are known in closed form, which walls, two levels
+ * (sd_ewald_levels.h) and the tightest tolerances want. */
+typedef enum { GAUSSIAN, BAND } fall;
+
+/* What a splitting must know of the spheres and of what is asked */
+typedef struct {
+  fall fall;
+  sd_ewald_class spheres;
+  /* all radii are alike; windows are differentiated, for unlike radii and for torques */
+  int width, equal, slopes;
+  /* that of H; of xi times the largest radius */
+  double a_ref, most;
+  /* in a slab, else 0: the longest range that saves anything; gap of sd_ewald_choose_in_slab; the range
+   * that is tried over that of a cube; is the slab a tower? */
+  double farthest, gap, times;
+  int tall;
+} splitting;
+
+/* The tolerance t after what large spheres and torques lose: those larger than 1/xi have large wave and near
+ * parts that cancel. y = xi range, which is smaller for a band, and its windows mistake more. The functions
+ * below take t. */
+double sd_splitting_tightened(const splitting *by, double tolerance, double xi_y);
+
+/* y; that of a Gaussian, whose near part falls as exp(-y^2) */
+double sd_splitting_y(const sd_ewald_box *box, const splitting *by, double t);
+double sd_splitting_gaussian_y(const sd_ewald_box *box, double t);
+
+/* The range of a band in spacings. And the largest spacing, for e->xi and e->range; that of a Gaussian */
+double sd_splitting_band_spacings(const sd_ewald_box *box, const splitting *by, double t);
+double sd_splitting_spacing(const sd_ewald *e, const splitting *by, double t, double y);
+double sd_splitting_gaussian_spacing(double xi, double y);
+
+/* The window: its points, and beta over these */
+int sd_splitting_points(double t);
+int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, double t);
+double sd_splitting_beta(const splitting *by);
+
+#endif
