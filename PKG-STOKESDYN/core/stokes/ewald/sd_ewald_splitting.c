@@ -25,7 +25,7 @@ static double loss_by_torques(const splitting *by, double tolerance, double xi_y
   if (by->width < 6) return 1.0;
   if (by->fall == GAUSSIAN) return 3.0;
   if (!by->equal) return 1.2 + 0.2 * digits;
-  return fmax(1.0, (0.43 + 0.54 * digits) * pow(largest_wave(by, xi_y), 2.2));
+  return fmax(1.0, (1.0 + 0.4 * digits) * pow(largest_wave(by, xi_y), 2.2));
 }
 
 double sd_splitting_tightened(const splitting *by, double tolerance, double xi_y)
@@ -89,7 +89,7 @@ int sd_splitting_points(double t)
 int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, double t)
 {
   if (!equal_turn(by)) return sd_splitting_points(t);
-  const double loss = fmax(1.0, 0.35 * pow(largest_wave(by, xi_y), 2.0));
+  const double loss = fmax(1.0, 0.42 * pow(largest_wave(by, xi_y), 2.0));
   return whole_points(1.4 + 1.15 * log10(loss / tolerance));
 }
 

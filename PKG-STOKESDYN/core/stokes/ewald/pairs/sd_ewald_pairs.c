@@ -219,7 +219,7 @@ void *sd_ewald_pairs_rows(sd_ewald_pairs *p)
 void sd_ewald_pairs_take(const sd_ewald_pairs *p, int n, const double *F, const void *rows,
                          const double *tail, const double *sums, double *u)
 {
-  memset(u, 0, sizeof(double) * (size_t) p->width * (size_t) n);
+  if (p->n < n) memset(u, 0, sizeof(double) * (size_t) p->width * (size_t) n); /* some have no radius */
   p->numbers->take(p, F, rows, tail, sums, u);
   sd_ewald_groups_apply(p, F, u);
 }

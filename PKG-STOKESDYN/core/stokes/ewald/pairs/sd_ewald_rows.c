@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "sd_constants.h"
+#include "sd_isa.h"
 #include "sd_real.h"
 
 /* --- places --- */
@@ -39,6 +40,28 @@ static void rows_stand(sd_ewald_pairs *p)
 
 /* --- forces --- */
 
+/* Rows are in order of cells, and spheres anywhere in memory: what one has there is fetched so many rows before
+ * it is wanted. */
+enum { AHEAD = 12 };
+
+static inline void fetch_ahead(int m, const double *numbers)
+{
+#ifdef SD_HAS_VECTORS
+  __builtin_prefetch(numbers);
+  __builtin_prefetch(numbers + m - 1);
+#else
+  (void) m;
+  (void) numbers;
+#endif
+}
+
+static inline const double *force_on(int m, const sd_ewald_pairs *p, long row, int n, const double *F,
+                                     const double *ghosts)
+{
+  const long i = p->sphere[row];
+  return i < n ? F + m * i : ghosts + m * (i - n);
+}
+
 /* m: the width, of which the compiler makes a copy each */
 static inline void load_of_width(int m, const sd_ewald_pairs *p, int n, const double *F, const double *ghosts,
                                  double *sums)
@@ -50,7 +73,8 @@ static inline void load_of_width(int m, const sd_ewald_pairs *p, int n, const do
   for (long k = 0; k < p->rows; k++) {
     const long i = sphere[k];
     real *to = row + 8 * k;
-    const double w = to[7], *from = i < n ? F + m * i : ghosts + m * (i - n);
+    fetch_ahead(m, force_on(m, p, k + AHEAD < p->rows ? k + AHEAD : k, n, F, ghosts));
+    const double w = to[7], *from = force_on(m, p, k, n, F, ghosts);
     const double b = p->equal || i >= n ? 0.0 : sd_ewald_b(&p->ewald, to[3] * length);
     for (int d = 0; d < m; d++) {
       const double f = w * from[d];
@@ -99,9 +123,13 @@ static inline void take_of_width(int m, const sd_ewald_pairs *p, const double *F
   const double scale = p->scale, length = 1.0 / scale, alike = self_of(p, 0.0), turned = 0.25 * p->origin[SD_I1];
   const double over_V = 1.0 / sd_ewald_volume(&p->ewald.box), none[SD_EWALD_SUMS] = {0.0};
   const double *C = sums ? tail : none, *S = sums ? sums : none;
+  const double over_unit = 1.0 / p->unit; /* of a power of two: exact */
   for (long i = 0; i < p->n; i++) {
     const long k = p->target[i], j = p->sphere[k];
-    const double w = row[8 * k + 7], unit = w * scale / (8.0 * SD_PI) / p->unit, wave = w / p->unit;
+    const double w = row[8 * k + 7], unit = w * scale / (8.0 * SD_PI) * over_unit, wave = w * over_unit;
+    const long later = m * (long) p->sphere[p->target[i + AHEAD < p->n ? i + AHEAD : i]];
+    fetch_ahead(m, F + later);
+    fetch_ahead(m, u + later);
     const double b = p->equal ? 0.0 : sd_ewald_b(&p->ewald, row[8 * k + 3] * length);
     const double self = p->equal ? alike : self_of(p, b);
     for (int d = 0; d < m; d++) {

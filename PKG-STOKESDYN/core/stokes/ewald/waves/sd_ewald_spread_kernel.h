@@ -63,6 +63,17 @@ typedef struct {
       second[3][MOST_POINTS + LANES];
 } windows;
 
+/* Of the terms of sd_spreading: is the one of unlike radii among them, and those of torques? */
+INLINE int unlike(int terms)
+{
+  return terms == 2 || terms == 4;
+}
+
+INLINE int turning(int terms)
+{
+  return terms >= 3;
+}
+
 INLINE void windows_at(int directions, int terms, const spreading *s, const sd_spread_place *at, windows *w)
 {
   for (int d = 0; d < directions; d++)
@@ -70,25 +81,38 @@ INLINE void windows_at(int directions, int terms, const spreading *s, const sd_s
       vec f[3];
       window_at(s->coefficient[0] + k, MOST_POINTS + LANES, s->degree, terms > 1, all((real) at->v[d]), f);
       store_any(w->value[d] + k, f[0]);
-      if (terms == 1) continue;
-      store_any(w->first[d] + k, f[1]);
-      store_any(w->second[d] + k, f[2]);
+      if (turning(terms)) store_any(w->first[d] + k, f[1]);
+      if (unlike(terms)) store_any(w->second[d] + k, f[2]);
     }
 }
 
-/* m_t at point p of x, q of y */
-INLINE void factors(int terms, const spreading *s, const windows *w, int p, int q, real *m)
+/* sum_t m_t V_t = A_0 phi_y + A_1 phi_y' + A_2 phi_y'': the factors of these at point p of x */
+INLINE void factors_of_y(int terms, const spreading *s, const windows *w, int p, const vec V[4], vec A[3])
 {
-  const real *g = s->metric, x = w->value[0][p], y = w->value[1][q];
-  m[0] = x * y;
-  if (terms == 1) return;
-  const real xx = w->second[0][p], yy = w->second[1][q];
-  m[1] = g[0] * xx * y + g[1] * x * yy;
-  if (terms == 2) return;
-  const real x1 = w->first[0][p], y1 = w->first[1][q];
-  m[1] += 2 * g[3] * x1 * y1;
-  m[2] = x1 * y;
-  m[3] = x * y1;
+  const real *g = s->metric, x = w->value[0][p];
+  A[0] = all(x) * V[0];
+  if (unlike(terms)) {
+    A[0] += all(g[0] * w->second[0][p]) * V[1];
+    A[2] = all(g[1] * x) * V[1];
+  }
+  if (turning(terms)) {
+    A[0] += all(w->first[0][p]) * V[2];
+    A[1] = all(x) * V[3];
+  }
+  if (terms == 4) A[1] += all(2 * g[3] * w->first[0][p]) * V[1];
+}
+
+/* The transpose: S_t += what the sums A along y are to m_t */
+INLINE void add_factors_of_y(int terms, const spreading *s, const windows *w, int p, const vec A[3], vec S[4])
+{
+  const real *g = s->metric, x = w->value[0][p];
+  S[0] += all(x) * A[0];
+  if (unlike(terms)) S[1] += all(g[0] * w->second[0][p]) * A[0] + all(g[1] * x) * A[2];
+  if (turning(terms)) {
+    S[2] += all(w->first[0][p]) * A[0];
+    S[3] += all(x) * A[1];
+  }
+  if (terms == 4) S[1] += all(2 * g[3] * w->first[0][p]) * A[1];
 }
 
 /* What a sphere spreads: F; and of torques, grad w x T / 2 = sum_d dw/dx_d tau_d, tau_d = G_d x T / 2 */
@@ -96,7 +120,7 @@ INLINE void strengths(int terms, const spreading *s, const real *F, real to[4][3
 {
   memset(to, 0, sizeof(real[4][3]));
   for (int c = 0; c < 3; c++) to[0][c] = F[c];
-  if (terms < 4 || s->width < 6) return;
+  if (!turning(terms) || s->width < 6) return;
   const real half = (real) 0.5, *T = F + 3;
   for (int d = 0; d < 3; d++) {
     const real *G = s->gradient[d];
@@ -106,29 +130,31 @@ INLINE void strengths(int terms, const spreading *s, const real *F, real to[4][3
   }
 }
 
+/* LANES numbers of a row [points][3] that has `from` at each point, from `skip` on */
+INLINE vec repeated(const spreading *s, int skip, const real *from)
+{
+  vec row = all(from[0]) * load_any(s->of[0] + skip);
+  for (int c = 1; c < 3; c++) row += all(from[c]) * load_any(s->of[c] + skip);
+  return row;
+}
+
 /* LANES numbers of V_t [points][3], from `skip` on */
 INLINE void row_of_force(int terms, const spreading *s, int skip, const sd_spread_place *at, real from[4][3],
                          vec V[4])
 {
   const real *g = s->metric;
-  const vec b = all((real) at->b);
-  vec z[3], mine[4];
+  const vec b = all((real) at->b), F = repeated(s, skip, from[0]);
+  vec z[3];
   window_at(s->thrice[0] + skip, MOST_ROW, s->degree, terms > 1, all((real) at->v[2]), z);
-#pragma GCC unroll 4
-  for (int t = 0; t < terms; t++) {
-    mine[t] = all(from[t][0]) * load_any(s->of[0] + skip);
-    for (int c = 1; c < 3; c++) mine[t] += all(from[t][c]) * load_any(s->of[c] + skip);
-  }
-  if (terms == 1) {
-    V[0] = mine[0] * z[0];
-    return;
-  }
-  V[0] = mine[0] * (z[0] + b * all(g[2]) * z[2]);
-  V[1] = b * mine[0] * z[0];
-  if (terms == 2) return;
-  V[0] += mine[3] * z[1];
-  V[2] = mine[1] * z[0] + all(2 * g[4]) * b * mine[0] * z[1];
-  V[3] = mine[2] * z[0] + all(2 * g[5]) * b * mine[0] * z[1];
+  V[0] = F * (unlike(terms) ? z[0] + b * all(g[2]) * z[2] : z[0]);
+  if (unlike(terms)) V[1] = b * F * z[0];
+  if (!turning(terms)) return;
+  V[0] += repeated(s, skip, from[3]) * z[1];
+  V[2] = repeated(s, skip, from[1]) * z[0];
+  V[3] = repeated(s, skip, from[2]) * z[0];
+  if (!unlike(terms)) return;
+  V[2] += all(2 * g[4]) * b * F * z[1];
+  V[3] += all(2 * g[5]) * b * F * z[1];
 }
 
 /* The first point of a sphere in the brick */
@@ -147,18 +173,21 @@ INLINE void spread_chunk(int terms, int vectors, const spreading *s, const windo
   vec v[MOST_VECTORS][4];
 #pragma GCC unroll 6
   for (int l = 0; l < vectors; l++) row_of_force(terms, s, skip + LANES * l, at, from, v[l]);
-  for (int p = 0; p < points; p++)
+  for (int p = 0; p < points; p++) {
+    vec A[MOST_VECTORS][3];
+#pragma GCC unroll 6
+    for (int l = 0; l < vectors; l++) factors_of_y(terms, s, w, p, v[l], A[l]);
     for (int q = 0; q < points; q++) {
-      real *row = corner + p * s->layer + q * s->row, m[4];
-      factors(terms, s, w, p, q, m);
+      real *row = corner + p * s->layer + q * s->row;
 #pragma GCC unroll 6
       for (int l = 0; l < vectors; l++) {
-        vec sum = load_any(row + LANES * l);
-#pragma GCC unroll 4
-        for (int t = 0; t < terms; t++) sum += all(m[t]) * v[l][t];
+        vec sum = load_any(row + LANES * l) + all(w->value[1][q]) * A[l][0];
+        if (turning(terms)) sum += all(w->first[1][q]) * A[l][1];
+        if (unlike(terms)) sum += all(w->second[1][q]) * A[l][2];
         store_any(row + LANES * l, sum);
       }
     }
+  }
 }
 
 INLINE void spread_with(int terms, int vectors, int chunks, const spreading *s)
@@ -183,13 +212,10 @@ INLINE void force_of_rows(int terms, const spreading *s, const windows *w, real 
   for (int k = 0; k < s->points; k++)
     for (int c = 0; c < 3; c++) {
       const int at = 3 * k + c;
-      if (terms == 1) {
-        U[c] += S[0][at] * z[k];
-        continue;
-      }
-      U[c] += S[0][at] * (z[k] + b * g[2] * z2[k]) + S[1][at] * b * z[k];
-      if (terms == 2) continue;
-      U[c] += 2 * b * z1[k] * (g[4] * S[2][at] + g[5] * S[3][at]);
+      U[c] += S[0][at] * z[k];
+      if (unlike(terms)) U[c] += b * (g[2] * S[0][at] * z2[k] + S[1][at] * z[k]);
+      if (!turning(terms)) continue;
+      if (unlike(terms)) U[c] += 2 * b * z1[k] * (g[4] * S[2][at] + g[5] * S[3][at]);
       slope[0][c] += S[2][at] * z[k];
       slope[1][c] += S[3][at] * z[k];
       slope[2][c] += S[0][at] * z1[k];
@@ -210,27 +236,31 @@ INLINE void gather_chunk(int terms, int vectors, const spreading *s, const windo
                          const real *corner, real *S)
 {
   const int points = s->points;
-  vec v[4][MOST_VECTORS];
-#pragma GCC unroll 4
-  for (int t = 0; t < terms; t++)
+  vec v[MOST_VECTORS][4];
 #pragma GCC unroll 6
-    for (int l = 0; l < vectors; l++) v[t][l] = all(0.0);
-  for (int p = 0; p < points; p++)
+  for (int l = 0; l < vectors; l++)
+    for (int t = 0; t < 4; t++) v[l][t] = all(0.0);
+  for (int p = 0; p < points; p++) {
+    vec A[MOST_VECTORS][3];
+#pragma GCC unroll 6
+    for (int l = 0; l < vectors; l++) A[l][0] = A[l][1] = A[l][2] = all(0.0);
     for (int q = 0; q < points; q++) {
       const real *row = corner + p * s->layer + q * s->row;
-      real m[4];
-      factors(terms, s, w, p, q, m);
 #pragma GCC unroll 6
       for (int l = 0; l < vectors; l++) {
         const vec u = load_any(row + LANES * l);
-#pragma GCC unroll 4
-        for (int t = 0; t < terms; t++) v[t][l] += all(m[t]) * u;
+        A[l][0] += all(w->value[1][q]) * u;
+        if (turning(terms)) A[l][1] += all(w->first[1][q]) * u;
+        if (unlike(terms)) A[l][2] += all(w->second[1][q]) * u;
       }
     }
-#pragma GCC unroll 4
-  for (int t = 0; t < terms; t++)
 #pragma GCC unroll 6
-    for (int l = 0; l < vectors; l++) store_any(S + t * MOST_ROW + LANES * l, v[t][l]);
+    for (int l = 0; l < vectors; l++) add_factors_of_y(terms, s, w, p, A[l], v[l]);
+  }
+#pragma GCC unroll 6
+  for (int l = 0; l < vectors; l++)
+#pragma GCC unroll 4
+    for (int t = 0; t < 4; t++) store_any(S + t * MOST_ROW + LANES * l, v[l][t]);
 }
 
 INLINE void interpolate_with(int terms, int vectors, int chunks, const spreading *s)
@@ -281,6 +311,7 @@ INLINE void interpolate_with(int terms, int vectors, int chunks, const spreading
     in_reals(asked, &in);                                               \
     if (asked->terms == 1) OF_VECTORS(call, 1)                              \
     else if (asked->terms == 2) OF_VECTORS(call, 2)                         \
+    else if (asked->terms == 3) OF_VECTORS(call, 3)                         \
     else OF_VECTORS(call, 4)                                            \
   } while (0)
 

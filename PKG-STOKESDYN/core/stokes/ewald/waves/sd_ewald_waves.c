@@ -217,7 +217,7 @@ static void find_terms(sd_ewald_waves *w)
   s->n = w->n;
   s->width = w->width;
   s->window = &w->window;
-  s->terms = w->width == 6 || (oblique && !equal) ? 4 : equal ? 1 : 2;
+  s->terms = equal ? (w->width == 6 ? 3 : 1) : w->width == 6 || oblique ? 4 : 2;
   s->place = w->place;
   s->brick = g->brick;
   memcpy(s->lo, g->lo, sizeof(s->lo));
