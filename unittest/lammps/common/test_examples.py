@@ -15,7 +15,7 @@ QUICK = ["clump_resistance", "dense_settling", "first_look", "fixed_bed", "landi
          "squeeze", "vans_drag", "vans_fluid", "vans_fluidised", "wall_shear"]
 # by their option --quick
 BRIEF = ["active", "cfd_coupling", "fibres", "hele_shaw", "magnetic", "rheology", "roller_layer", "settling_layer", "shapes", "ship",
-         "swimmers", "tumbling", "vans_sorting"]
+         "swimmers", "tumbling", "vans_sorting", "vans_waves"]
 
 
 # how a warning about a command of LAMMPS beside ours begins (common/neighbours.h)
