@@ -6,6 +6,7 @@
                            build/examples/rheology)
     run.py --quick         the same with 32 spheres, some seconds
     run.py --all           every row anew with 500 spheres: --spheres 108 for a smaller box, --sets 2 for two runs a row
+    run.py --larger        larger.csv anew: 500 spheres at the ends of the sweep, by short runs
     run.py --all --update  also refreshes the tables and the picture in this folder
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
@@ -21,6 +22,7 @@ from equilibrium import hard_spheres, write_data  # noqa: E402
 from runs import np, plt, finished, need, options, read_table, save, values  # noqa: E402
 
 PHIS, PECLETS = (0.3, 0.45), (1, 3, 10, 30, 100, 1000)
+LARGER = 1, 1000
 GRAINS, FRICTIONS, GRAIN_STEP = (0.4, 0.45, 0.5), (0.0, 0.5), 1.4e-3
 # Viscosity with friction over that of experiments: a small box jams sooner
 BEYOND = {0.4: (0.7, 1.3), 0.45: (0.7, 1.3), 0.5: (1.0, 2.3)}
@@ -32,6 +34,12 @@ BEYOND = {0.4: (0.7, 1.3), 0.45: (0.7, 1.3), 0.5: (1.0, 2.3)}
 def low_shear(phi):
     """Experiments: van der Werff & de Kruif, J. Rheol. 33, 421 (1989)"""
     return (1 - phi / 0.63)**-2
+
+
+def theory(phi):
+    """At low shear, in agreement with those experiments: Verberg, de Schepper & Cohen, Phys. Rev. E 55, 3143 (1997)"""
+    at_contact = (1 - phi / 2) / (1 - phi)**3
+    return at_contact * (1 + 1.44 * (phi * at_contact)**2 / (1 - 0.1241 * phi + 10.46 * phi**2))
 
 
 def high_shear(phi):
@@ -98,8 +106,8 @@ def steady(runs, start, block, rate=1.0):
     return dict(result, gap=gap)
 
 
-def of_brownian(runs, peclet):
-    return steady(runs, min(2 / peclet, 0.5), min(1 / peclet, 0.5), peclet)
+def of_brownian(runs, peclet, part=1.0):
+    return steady(runs, min(2 / peclet, 0.5), part * min(1 / peclet, 0.5), peclet)
 
 
 def of_grains(runs):
@@ -113,6 +121,16 @@ def sweep(out, n, sets):
             strain = min(8.0, 3.0 * peclet)
             runs = [brownian(out, x, edge, peclet, strain, 4711 + k) for k, (x, edge) in enumerate(places)]
             yield told(dict(phi=phi, Pe=peclet, **of_brownian(runs, peclet)))
+
+
+def larger(out, n, sets):
+    """Short runs, so that blocks are shorter as well"""
+    for phi in PHIS:
+        places = list(hard_spheres(n, phi, sets, seed=1 + int(100 * phi)))
+        for peclet in LARGER:
+            strain = min(4.0, 1.5 * peclet)
+            runs = [brownian(out, x, edge, peclet, strain, 4711 + k) for k, (x, edge) in enumerate(places)]
+            yield told(dict(phi=phi, Pe=peclet, **of_brownian(runs, peclet, 0.25)))
 
 
 def friction(out, n, sets):
@@ -146,22 +164,27 @@ def chosen(rows, **what):
 # --- picture --------------------------------------------------------------------------------------------------------
 
 
-def draw(brownian_rows, grain_rows, path):
+def draw(brownian_rows, larger_rows, grain_rows, path):
     plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
     figure, (left, middle, right) = plt.subplots(1, 3, figsize=(12.5, 4.4), layout="constrained")
     for phi, mark, colour in zip(PHIS, "so", ("C0", "C3")):
         rows = chosen(brownian_rows, phi=phi)
         peclet, y, error = columns(rows, "Pe", "viscosity", "viscosity_error")
         left.errorbar(peclet, y, 2 * error, fmt=mark + "-", lw=0.8, color=colour, ms=5, label=f"volume fraction {phi}")
+        at, larger_y, error = columns(chosen(larger_rows, phi=phi), "Pe", "viscosity", "viscosity_error")
+        left.errorbar(at * 1.15, larger_y, 2 * error, fmt=mark, lw=0.8, color=colour, mfc="white", ms=5)
         left.plot((peclet[0] / 6, peclet[0] / 2), 2 * [low_shear(phi)], "--", color=colour, lw=1.5)
+        left.plot((peclet[0] / 6, peclet[0] / 2), 2 * [theory(phi)], ":", color=colour, lw=1.5)
         left.plot((peclet[-1] * 1.5, peclet[-1] * 5), 2 * [high_shear(phi)], "--", color=colour, lw=1.5)
         for name, style, fill, shift in (("N1", "-", colour, 0.94), ("N2", ":", "none", 1.06)):
             y, error = columns(rows, name, name + "_error")
             middle.errorbar(peclet * shift, y, 2 * error, fmt=mark, ls=style, lw=0.8, color=colour, mfc=fill, ms=5,
                             label=f"{name}, {phi}")
+    left.plot([], [], "kD", mfc="white", ms=5, label="500 spheres")
     left.plot([], [], "k--", lw=1.5, label="limits of experiments: van der Werff & de Kruif 1989")
+    left.plot([], [], "k:", lw=1.5, label="limit of low shear: Verberg et al. 1997")
     over_fluid = "viscosity / that of the fluid"
-    left.set(xscale="log", yscale="log", xlabel="Peclet number", ylabel=over_fluid, ylim=(2.4, 22),
+    left.set(xscale="log", yscale="log", xlabel="Peclet number", ylabel=over_fluid, ylim=(2.4, 38),
              title="Brownian hard spheres")
     left.set_yticks((3, 4, 5, 7, 10, 15), (3, 4, 5, 7, 10, 15))
     middle.axhline(0, color="0.6", lw=0.8)
@@ -211,6 +234,13 @@ def check_brownian(c, rows):
         c.below(say + "N2 at Pe 1000", fast["N2"], -2 * fast["N2_error"])
 
 
+def check_larger(c, larger_rows, rows):
+    for row in map(numbers, larger_rows):
+        beside = numbers(chosen(rows, phi=row["phi"], Pe=row["Pe"])[0])
+        say = f"Brownian, phi {row['phi']:g}, Pe {row['Pe']:g}: "
+        c.within(say + "viscosity of 500 spheres less that of 108, in errors", excess(row, beside), -3, 3)
+
+
 def check_grains(c, rows):
     for phi in GRAINS:
         smooth, rough = (numbers(chosen(rows, phi=phi, mu=mu)[0]) for mu in FRICTIONS)
@@ -249,23 +279,29 @@ def check_quick(c, out):
 
 
 def main():
-    given = options(__file__, __doc__, quick=False, all=False, spheres=500, sets=1)
+    given = options(__file__, __doc__, quick=False, all=False, larger=False, spheres=500, sets=1)
     need("lmp")
-    c, made = Checks(), given.out if given.all else HERE
+    c, made, made_larger = Checks(), given.out if given.all else HERE, given.out if given.larger else HERE
     if given.all:
         what = f"{given.spheres} spheres; stresses over the fluid's viscosity and the rate of shear; errors of the mean"
         write(sweep(given.out, given.spheres, given.sets), made / "sweep.csv", what)
         write(friction(given.out, given.spheres, given.sets), made / "friction.csv", what)
+    if given.larger:
+        rows = larger(given.out, given.spheres, given.sets)
+        write(rows, made_larger / "larger.csv", f"{given.spheres} spheres, as sweep.csv")
     brownian_rows, grain_rows = read_table(made / "sweep.csv"), read_table(made / "friction.csv")
+    larger_rows = read_table(made_larger / "larger.csv")
     check_brownian(c, brownian_rows)
+    check_larger(c, larger_rows, brownian_rows)
     check_grains(c, grain_rows)
     if given.quick:
         check_quick(c, given.out)
-    elif not given.all:
+    elif not given.all and not given.larger:
         check_short(c, given.out, brownian_rows, grain_rows)
-    draw(brownian_rows, grain_rows, given.out / "rheology.png")
+    draw(brownian_rows, larger_rows, grain_rows, given.out / "rheology.png")
     if given.update:
-        for name in ("rheology.png",) + (("sweep.csv", "friction.csv") if given.all else ()):
+        tables = ("sweep.csv", "friction.csv") * given.all + ("larger.csv",) * given.larger
+        for name in ("rheology.png",) + tables:
             shutil.copy(given.out / name, HERE)
     sys.exit(c.finish())
 
