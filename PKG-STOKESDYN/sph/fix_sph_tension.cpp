@@ -247,7 +247,7 @@ void FixSphTension::find_normals()
       row[3] = 1.0;
     }
     beside.resize(8 * nlocal + 4);
-    at_wall.resize(4 * nlocal + 4);
+    at_wall.resize(8 * nlocal + 4);
     sd_sph_film_wet_walls(&film, contact.data(), sums.data(), beside.data());
   }
   whole.resize(4 * nlocal + 4);
@@ -306,7 +306,13 @@ void FixSphTension::add_forces()
   F.resize(3 * (size_t) atom->nlocal + 1);
   const sd_sph_tension how = {sigma, sd_sph_surface_friction(sigma, rho0, surface.h)};
   area.resize(atom->nlocal + 1);
-  sd_sph_tension_forces(&film, &how, whole.data(), at_surface.data(), turns.data(), kappa.data(), F.data(), area.data());
+  const double *k = kappa.data();
+  sd_sph_tension_forces(&film, &how, whole.data(), at_surface.data(), turns.data(), k, F.data(), area.data());
+  if (!walls) return;
+  one.resize(atom->nlocal + 1);
+  for (int i = 0; i < atom->nlocal; i++)
+    one[i] = pair->is_particle(i) && !pair->is_of_wall(i) ? pair->pressure(i) : 0.0;
+  sd_sph_dry_walls(&film, sigma, sums.data(), whole.data(), k, one.data(), F.data());
 }
 
 /* In every step: drops that meet are one at once, whenever the run began and LAMMPS re-neighboured. */

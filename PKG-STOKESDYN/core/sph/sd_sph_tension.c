@@ -153,12 +153,11 @@ static void make_unit(double *n)
   for (int d = 0; d < 3; d++) n[d] /= length;
 }
 
-/* sin(theta) t + cos(theta) e, nw; 0 where the fluid shows no direction along the wall, as in the middle of a
- * wetted one. sums: S Gf | Sw Gw. */
-static void contact_normal(double h, const double *sums, const double *beside, double row[4])
+/* What the wall says of the surface at a particle, at_wall of sd_sph_film_normals; 0 where the fluid shows no
+ * direction along the wall, as in the middle of a wetted one. sums: S Gf | Sw Gw. */
+static void contact_line(const sd_sph_surface *s, const double *sums, const double *beside, double row[8])
 {
-  memset(row, 0, 4 * sizeof(double));
-  const double *Gf = sums + 1, *Gw = sums + 5, of_walls = beside[6], Gw_size = length3(Gw);
+  const double *Gf = sums + 1, *Gw = sums + 5, of_walls = beside[6], h = s->h, Gw_size = length3(Gw);
   if (!(of_walls > 0.0) || !(Gw_size * h > 1e-3)) return;
   double e[3], t[3], along = 0.0;
   for (int d = 0; d < 3; d++) {
@@ -168,9 +167,14 @@ static void contact_normal(double h, const double *sums, const double *beside, d
   for (int d = 0; d < 3; d++) t[d] = -Gf[d] - along * e[d];
   if (!(length3(t) * h > 1e-3)) return;
   make_unit(t);
-  for (int d = 0; d < 3; d++) row[d] = beside[5] / of_walls * t[d] + beside[4] / of_walls * e[d];
-  make_unit(row);
-  row[3] = fmin(1.0, 2.0 * of_walls);
+  const double size = hypot(beside[4], beside[5]), cosine = beside[4] / size, sine = beside[5] / size,
+               nw = fmin(1.0, 2.0 * of_walls), height = sd_sph_depth(s, 1.0 - of_walls);
+  for (int d = 0; d < 3; d++) {
+    row[d] = sine * t[d] + cosine * e[d];
+    row[4 + d] = sine * e[d] - cosine * t[d];
+  }
+  row[3] = nw;
+  row[7] = fmax(0.01 * h, (1.0 - nw) * height);
 }
 
 void sd_sph_film_normals(const sd_sph_film *f, const double *sums, const double *beside, double *whole,
@@ -183,7 +187,7 @@ void sd_sph_film_normals(const sd_sph_film *f, const double *sums, const double 
     double *S_G = whole + 4 * (size_t) i, *n = surface + 4 * (size_t) i;
     memcpy(S_G, of, 4 * sizeof(double));
     memset(n, 0, 4 * sizeof(double));
-    if (at_wall) memset(at_wall + 4 * (size_t) i, 0, 4 * sizeof(double));
+    if (at_wall) memset(at_wall + 8 * (size_t) i, 0, 8 * sizeof(double));
     if (is_wall(f, i)) {
       n[3] = -1.0;
       continue;
@@ -194,8 +198,8 @@ void sd_sph_film_normals(const sd_sph_film *f, const double *sums, const double 
     n[3] = fmin(1.0, (size * h - FROM) / (TO - FROM));
     for (int d = 0; d < 3; d++) n[d] = -S_G[1 + d] / size;
     if (!beside) continue;
-    double *contact = at_wall + 4 * (size_t) i;
-    contact_normal(h, of, beside + 8 * (size_t) i, contact);
+    double *contact = at_wall + 8 * (size_t) i;
+    contact_line(f->surface, of, beside + 8 * (size_t) i, contact);
     if (!(contact[3] > 0.0)) continue;
     for (int d = 0; d < 3; d++) n[d] += contact[3] * (contact[d] - n[d]);
     make_unit(n);
@@ -277,7 +281,7 @@ void sd_sph_film_curvatures(const sd_sph_film *f, const double *whole, const dou
     if (!(surface[4 * (size_t) i + 3] > 0.0)) continue;
     corrected_gradient(f->surface->dimension, rows + SD_SPH_SKIN_SUMS * (size_t) i, gradient);
     along_surface(surface + 4 * (size_t) i, gradient);
-    const int curved = !at_wall || !(at_wall[4 * (size_t) i + 3] > 0.0);
+    const int curved = !at_wall || !(at_wall[8 * (size_t) i + 3] > 0.0);
     kappa[i] = sd_sph_surface_curvature(f->surface, gradient, whole[4 * (size_t) i], curved);
   }
 }
@@ -297,7 +301,7 @@ void sd_sph_film_sharpen(const sd_sph_film *f, const double *kappa, const double
 {
   static const double SHARPER = 2.8, DEEPER = 0.16;
   for (int i = 0; i < f->list->n; i++) {
-    const double nw = at_wall ? at_wall[4 * (size_t) i + 3] : 0.0;
+    const double nw = at_wall ? at_wall[8 * (size_t) i + 3] : 0.0;
     const double k = (1.0 - nw) * (once[i] + SHARPER * (once[i] - twice[i])) + nw * kappa[i];
     ks[i] = k * (1.0 + DEEPER / (f->surface->dimension - 1) * f->surface->h * k);
   }
@@ -328,6 +332,17 @@ void sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const 
       if (w > 0.0) F[3 * (size_t) i + d] += factor * w * V * rubs[d];
     }
     area[i] = w > 0.0 || (w == 0.0 && rubs[-1] > 0.0) ? 2.0 * V * length3(G) : 0.0;
+  }
+}
+
+void sd_sph_dry_walls(const sd_sph_film *f, double sigma, const double *sums, const double *whole, const double *k,
+                      const double *P, double *F)
+{
+  for (int i = 0; i < f->list->n; i++) {
+    const double *of = sums + 8 * (size_t) i, *G = whole + 4 * (size_t) i + 1;
+    if (is_wall(f, i) || !(of[4] > 0.0)) continue;
+    const double push = 2.0 * f->x4[4 * (size_t) i + 3] * fmax(0.0, fmin(P[i], sigma * k[i]));
+    for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] += push * (of[1 + d] + of[5 + d] - G[d]);
   }
 }
 

@@ -10,9 +10,15 @@
  *   normal  n = - G/|G|; beside a wall, with e from the wall into the fluid and t the direction of - Gf
  *           across e, it goes over to the normal of the contact angle, sin(theta) t + cos(theta) e, with
  *           nw = min(1, 2 Sw)
- *   M = - sum w_b V g d d^T,  N = sum w_b V (n_b - n_a) g d^T; a wall particle shows a the normal of the
- *           contact angle, with w_b = 1. grad n = N M^-1, eigenvalues of M kept above 0.05;
- *           of it the part along the surface, P grad n P, P = I - n n^T
+ *   M = - sum w_b V g d d^T,  N = sum w_b V (n_b - n_a) g d^T. grad n = N M^-1, eigenvalues of M kept
+ *           above 0.05; of it the part along the surface, P grad n P, P = I - n n^T
+ *   line    a wall particle shows a the normal of the contact angle, with w_b = 1. That normal is true at
+ *           the contact line, below a along the surface. So the wall says how n turns between the line and
+ *           a, and nothing of how it turns along the line: with the direction u = sin(theta) e - cos(theta) t
+ *           up the surface, its part in N is (n_b - n_a) V g (d.u) u^T and in M - V g (d.u) l u u^T. The arm
+ *           is l = (1 - nw) z_w: z_w the height over the wall, 1 - nw since n_a has nw of that normal
+ *           already. (With d.u for l the surface would have half its curvature there; with z_w / sin(theta)
+ *           for z_w, the length along the surface, 150 degrees come out as 142 instead of 145.)
  *   depth   a particle at the depth z sees S0(z/h) of the whole; from curvatures k_i at its place follow
  *           those at the surface, k_i / (1 + k_i z). In 3-D they are the eigenvalues of the symmetric
  *           part of grad n, in 2-D it is its trace. A curved surface hides less: S0 = S + kappa h beta,
@@ -31,7 +37,9 @@
  * which keeps momentum and angular momentum. The force itself does so only to some thousandths of the
  * sum of its sizes: sd_sph_drops.h.
  * Uniform kappa and a uniform pressure sigma kappa cancel particle by particle, since the force of the
- * pressure is - 2 P V G.
+ * pressure is - 2 P V G. Beside a wall that holds only with what takes back the push of dry walls: fluid has
+ * its pressure of all wall particles, - 2 P V (Gf + Gw), as if there were fluid beyond the contact line. So
+ * F_a + 2 min(P_a, sigma k_a) V (Gf + Gw - G): no more than surface tension holds, for walls must stop water.
  * Source: Brackbill, Kothe & Zemach 1992 (the continuum force), Morris 2000 (in SPH); depth, means and
  * friction of the surface: unittest/core/sph/test_sph_tension.c and doc/fix_sph_tension.md. */
 #ifndef SD_SPH_TENSION_H
@@ -85,7 +93,7 @@ void sd_sph_film_wetness(const sd_sph_film *f, const double *sums, double *wet);
 void sd_sph_film_wet_walls(const sd_sph_film *f, const double *contact, const double *sums, double *beside);
 
 /* whole [4 n]: S G with wet walls. Rows of the surface [4 n]: normal, w; 0 0 0 -1 of wall particles. at_wall
- * [4 n]: the normal of the contact angle, nw. beside and at_wall are NULL without walls. */
+ * [8 n]: the normal of the contact angle, nw | u, l. beside and at_wall are NULL without walls. */
 void sd_sph_film_normals(const sd_sph_film *f, const double *sums, const double *beside, double *whole,
                          double *surface, double *at_wall);
 
@@ -125,6 +133,10 @@ typedef struct {
 void sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const double *whole,
                            const double *surface, const double *rows, const double *k, double *F,
                            double *area);
+
+/* Adds to F [3 n] what takes back the push of dry walls; P [n]: pressure, of fluid. */
+void sd_sph_dry_walls(const sd_sph_film *f, double sigma, const double *sums, const double *whole,
+                      const double *k, const double *P, double *F);
 
 /* Time step up to which waves of the length 2 h on the surface are resolved, 0.25 sqrt(rho h^3 / (2 pi
  * sigma)); mu_s; and the Ohnesorge number mu / sqrt(rho sigma R) of a drop. */

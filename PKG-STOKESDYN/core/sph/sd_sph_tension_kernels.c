@@ -129,13 +129,14 @@ INLINE void film_turns(const sd_sph_film *f, const double *surface, const double
     const row4 ni = load4(surface + 4 * (size_t) i);
     skin->first[i] = last;
     if (!(ni[3] > 0.0)) continue;
-    const row4 shown = at_wall ? load4(at_wall + 4 * (size_t) i) : (row4){0};
+    const row4 shown = at_wall ? load4(at_wall + 8 * (size_t) i) : (row4){0};
+    const row4 line = at_wall ? load4(at_wall + 8 * (size_t) i + 4) : (row4){0};
     const size_t end = last + (size_t) skin_of(f, surface, i, skin->neighbor + last);
     vec sum[SD_SPH_SKIN_SUMS];
     for (int k = 0; k < SD_SPH_SKIN_SUMS; k++) sum[k] = zero;
     for (; last < end; last += LANES) {
       const int *j = skin->neighbor + last;
-      const meeting m = meets(f, c, xi, j, 1, kernel);
+      meeting m = meets(f, c, xi, j, 1, kernel);
       vec n[4], v[4], vd = zero;
       gather(surface, 4, j, n);
       gather(v4, 4, j, v);
@@ -147,7 +148,11 @@ INLINE void film_turns(const sd_sph_film *f, const double *surface, const double
       const vec along = g * vd / larger(m.r2, all(1e-300));
       for (int d = 0; d < 3; d++) sum[16 + d] += along * m.d[d];
       const yes_no shows = n[3] < zero;
-      if (shown[3] > 0.0) g = where(shows, m.g, g);
+      if (shown[3] > 0.0) {
+        const vec up = larger(m.d[0] * line[0] + m.d[1] * line[1] + m.d[2] * line[2], zero);
+        g = where(shows, m.g * up * (1.0 / line[3]), g);
+        for (int d = 0; d < 3; d++) m.d[d] = where(shows, all(line[3] * line[d]), m.d[d]);
+      }
       for (int d = 0; d < 3; d++) n[d] = where(shows, all(shown[d]), n[d]) - ni[d];
       add_turns(m.d, n, g, sum);
     }

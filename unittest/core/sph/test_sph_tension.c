@@ -16,7 +16,7 @@ typedef struct {
   int n, wall[MOST + 1], *neighbor[MOST], own[MOST], count[MOST], *pool;
   double x4[4 * (MOST + 1)], v4[4 * (MOST + 1)];
   double sums[8 * MOST], beside[8 * MOST], contact[4 * (MOST + 1)], whole[4 * MOST];
-  double surface[4 * (MOST + 1)], at_wall[4 * MOST], kappa[MOST + 1], F[3 * MOST], area[MOST];
+  double surface[4 * (MOST + 1)], at_wall[8 * MOST], kappa[MOST + 1], F[3 * MOST], area[MOST];
   double rows[SD_SPH_SKIN_SUMS * MOST], k[MOST];
   size_t first[MOST + 1];
   sd_sph_skin skin;
@@ -380,14 +380,83 @@ static void a_wedge_with_its_contact_angle_is_plane(void **state)
       }
       /* the lowest row has the normal that is given, rows far up their own */
       if (!(n[3] > 0.9) || !(x[1] < dx)) continue;
-      CHECK_NEAR(s->at_wall[4 * i], sin(angle), 0.02);
-      CHECK_NEAR(s->at_wall[4 * i + 1], cos(angle), 0.02);
+      CHECK_NEAR(s->at_wall[8 * i], sin(angle), 0.02);
+      CHECK_NEAR(s->at_wall[8 * i + 1], cos(angle), 0.02);
       CHECK_NEAR(n[0], sin(angle), 0.15);
       CHECK_NEAR(n[1], cos(angle), 0.15);
       seen++;
     }
     assert_true(seen > 0);
   }
+}
+
+/* Half a ball or half a long cylinder on a floor, cut from a lattice that both share, so that the surface goes on as
+ * if the floor were a mirror. */
+static void half(drop *s, double dx, int ball)
+{
+  const double R = 0.8, edge = 1.2;
+  const int m = (int) (edge / dx + 0.5), along = ball ? m : 5;
+  for (int a = -m; a < m; a++)
+    for (int c = -along; c < along; c++)
+      for (int b = -4; b < m; b++) {
+        const double x = (a + 0.5) * dx, y = (b + 0.5) * dx, z = (c + 0.5) * dx, flat = x * x + (ball ? z * z : 0.0);
+        if (b < 0 ? flat < edge * edge : flat + y * y < R * R) add(s, x, y, z, dx * dx * dx, b < 0);
+      }
+}
+
+/* Beside the contact line a ball bends along the line too, which a wall cannot see: 2/R, where a cylinder has 1/R. Over
+ * the mean of the surface far from the floor, which knows no wall. */
+static void a_surface_bends_along_its_contact_line(void **state)
+{
+  (void) state;
+  for (int ball = 0; ball < 2; ball++) {
+    drop *s = begin(3, 0.2);
+    half(s, 0.1, ball);
+    find_neighbours(s, 1);
+    look(s, 0.5 * 3.141592653589793);
+    double sum[2] = {0.0}, weight[2] = {0.0};
+    for (int i = 0; i < s->n; i++) {
+      const double *x = s->x4 + 4 * i, *G = s->whole + 4 * i + 1, w = G[0] * G[0] + G[1] * G[1] + G[2] * G[2];
+      if (!(s->surface[4 * i + 3] > 0.0) || (!ball && fabs(x[2]) > 0.1)) continue;
+      const int high = x[1] > 0.4;
+      if (!high && x[1] > 0.2) continue;
+      sum[high] += w * s->kappa[i];
+      weight[high] += w;
+    }
+    CHECK_NEAR(sum[0] / weight[0] / (sum[1] / weight[1]), 1.0, 0.1);
+  }
+}
+
+/* With the pressure sigma k nothing pulls, at the contact line neither, though fluid has its pressure of dry walls too.
+ * Of a higher pressure surface tension holds no more than that. */
+static void a_uniform_pressure_holds_a_drop_on_its_wall(void **state)
+{
+  (void) state;
+  static const double sigma = 2.5, k = 0.7;
+  drop *s = begin(3, 0.2);
+  half(s, 0.1, 0);
+  find_neighbours(s, 1);
+  look(s, 2.0);
+  static double P[MOST], wet[3 * MOST];
+  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->rows, s->kappa, s->k);
+  for (int i = 0; i < s->n; i++) {
+    s->k[i] = k;
+    P[i] = i % 2 ? sigma * k : 3.0 * sigma * k;
+  }
+  const sd_sph_tension how = {sigma, 0.0};
+  sd_sph_tension_forces(&s->film, &how, s->whole, s->surface, s->rows, s->k, s->F, s->area);
+  memcpy(wet, s->F, sizeof(wet));
+  sd_sph_dry_walls(&s->film, sigma, s->sums, s->whole, s->k, P, s->F);
+  double dry = 0.0;
+  for (int i = 0; i < s->n; i++) {
+    if (s->wall[i]) continue;
+    for (int d = 0; d < 3; d++) {
+      const double G = s->sums[8 * i + 1 + d] + s->sums[8 * i + 5 + d];
+      CHECK_NEAR(s->F[3 * i + d] - 2.0 * sigma * k * s->x4[4 * i + 3] * G, 0.0, 1e-14);
+      dry = fmax(dry, fabs(s->F[3 * i + d] - wet[3 * i + d]));
+    }
+  }
+  assert_true(dry > 1e-4);
 }
 
 /* Two drops, one of which is held. What is on one rank here stands for two: the second one sees the names of the
@@ -512,6 +581,8 @@ int main(void)
       cmocka_unit_test(a_uniform_curvature_pushes_as_a_pressure),
       cmocka_unit_test(friction_of_the_surface_keeps_momentum_and_its_moment_and_takes_energy),
       cmocka_unit_test(a_wedge_with_its_contact_angle_is_plane),
+      cmocka_unit_test(a_surface_bends_along_its_contact_line),
+      cmocka_unit_test(a_uniform_pressure_holds_a_drop_on_its_wall),
       cmocka_unit_test(a_free_drop_keeps_its_momentum_and_a_held_one_is_left_alone),
       cmocka_unit_test(drops_are_those_of_all_pairs),
       cmocka_unit_test(parts_of_a_drop_on_two_ranks_are_one),

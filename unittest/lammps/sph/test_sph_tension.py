@@ -192,6 +192,36 @@ def test_a_drop_on_a_wall_takes_its_contact_angle(angle):
     lmp.close()
 
 
+def test_a_cap_in_space_has_one_curvature_up_to_its_contact_line():
+    """Half a ball that spreads to 60 degrees, 12 across. A cap is round along its contact line too, which no wall particle shows: the
+    curvature of the lowest row is that of the whole, sigma k the pressure, and the angle that of the page."""
+    dx, angle = 2.0 / 12, 60
+    begin, fixes, dt = cap(angle, 12)
+    for flat, solid in (("dimension 2", "dimension 3"), ("boundary p f p", "boundary f f f"), (f"lattice sq {dx**-2:.17g} origin 0.5 0.5 0",
+                        f"lattice sc {dx**-3:.17g} origin 0.5 0.5 0.5"), (f"-{dx / 2:.17g} {dx / 2:.17g} units box\ncreate_box", "-2.4 2.4 units box\ncreate_box"),
+                        ("cylinder z 0.0 0 1 INF INF", "sphere 0 0 0 1"), (f"under block INF INF {-4 * dx:.17g} 0 INF INF", f"under cylinder y 0 0 1.8 {-4 * dx:.17g} 0"),
+                        (f"mass * {dx * dx:.17g}", f"mass * {dx**3:.17g}"), (f"{0.05 * dx:.17g} 0 4711", f"{0.05 * dx:.17g} {0.05 * dx:.17g} 4711")):
+        assert flat in begin, flat
+        begin = begin.replace(flat, solid)
+    fixes = fixes.replace(f"mass * {dx * dx:.17g}", f"mass * {dx**3:.17g}").replace("fix flat all enforce2d\n", "")
+    lmp = start()
+    run(lmp, begin + fixes + f"run {int(2.5 / dt)}")
+    water = by_id(lmp, "type") == 1
+    x, rho = by_id(lmp, "x", 3)[water], by_id(lmp, "rho")[water]
+    order = np.argsort(np.array(lmp.numpy.extract_atom("id"))[:len(water)])
+    k, w = np.array(lmp.numpy.extract_fix("t", 1, 2))[:len(water)][order][water].T[:2]
+    inside = np.linalg.norm(x - [0, 0.3, 0], axis=1) < 0.35
+    P = (400 / 7 * (rho[inside]**7 - 1)).mean()
+    low = (w > 0.5) & (x[:, 1] < dx)
+    assert low.sum() > 20 and abs(k[low].mean() / P - 1) < 0.15, (k[low].mean(), P)
+    t = np.radians(np.arange(20.0, 170.0, 0.05))
+    R = (water.sum() * dx**3 / (np.pi / 3 * (2 + np.cos(t)) * (1 - np.cos(t)) ** 2)) ** (1 / 3)
+    h = R * (1 - np.cos(t))
+    found = np.degrees(np.interp(x[:, 1].mean(), 0.75 * (2 * R - h) ** 2 / (3 * R - h) - R * np.cos(t), t))
+    assert abs(found - angle) < 6, found
+    lmp.close()
+
+
 def numbers(done):
     return [float(word) for line in done.stdout.splitlines() if line.startswith("has ") for word in line.split()[1:]]
 
