@@ -62,8 +62,8 @@ if(NOT STOKESDYN_SANITIZE)
     target_include_directories(${variant}_kernels PRIVATE $<TARGET_PROPERTY:stokesdyn_stokes,INCLUDE_DIRECTORIES>)
     target_link_libraries(${variant}_kernels PUBLIC stokesdyn_stokes)
     set_target_properties(${variant}_kernels PROPERTIES EXCLUDE_FROM_ALL ON)
-    foreach(file product/test_simd product/test_product ewald/test_ewald_kernels lubrication/test_block_cholesky
-            flow/test_flow_grid)
+    foreach(file product/test_simd product/test_product product/test_product_single ewald/test_ewald_kernels
+            lubrication/test_block_cholesky flow/test_flow_grid)
       get_filename_component(name ${file} NAME)
       core_test(${name}_${variant}_kernels stokes ${tests}/stokes/${file}.c ${variant}_kernels)
       target_compile_definitions(${name}_${variant}_kernels PRIVATE ${definition})

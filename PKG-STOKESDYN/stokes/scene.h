@@ -252,6 +252,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   bool has_cutoff() const { return std::isfinite(settings.cutoff); }
   bool periodic() const;
   bool split();
+  /* of a product, for sd_mobility_how.tolerance; 0: a solve goes on below the rounding of floats */
+  double harmless_error() const;
   const sd_mobility_engine *engine_of_all();
   void split_slab();
   sd_ewald_sizes sizes_of_all(double largest) const;

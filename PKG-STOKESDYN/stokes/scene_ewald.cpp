@@ -23,6 +23,12 @@ static const double MOST_IMAGES = 1e8;
 // Residual down to which a solve goes with products of floats: a hundred times their rounding, and more.
 static const double FLOATS_SOLVE_TO = 0.99e-4;
 
+/* Noise, too, asks for more digits than the tolerance says: a root goes on where a solve has ended. */
+double Scene::harmless_error() const
+{
+  return settings.residual < FLOATS_SOLVE_TO || settings.positive > 0.0 ? 0.0 : settings.far_field_tolerance;
+}
+
 sd_ewald_box Scene::lattice_box(const Domain *domain)
 {
   const Lattice lattice = Lattice::of(domain);
@@ -113,7 +119,7 @@ bool Scene::split()
         sd_ewald_choose_positive(&box, &sizes, width(), tolerance, settings.positive, &ewald);
   else
     status = sd_ewald_levels_choose(&box, &sizes, width(), tolerance, &ewald, &second_level);
-  if (settings.residual < FLOATS_SOLVE_TO) ewald.single = 0;
+  if (harmless_error() == 0.0) ewald.single = 0;
   ewald.box = box;
   if (status != SD_OK && must)
     voice.fail("keyword far_field: no grid for Ewald sums of " + text(sizes.all.count) +

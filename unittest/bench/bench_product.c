@@ -145,10 +145,10 @@ static contest contest_begin(int n, int m)
   return c;
 }
 
-static void contest_tell(contest *c, sd_isa isa, double pairs)
+static void contest_tell(contest *c, const char *what, double pairs)
 {
   const double mine = median(c->t[1], RUNS), its = median(c->t[0], RUNS);
-  printf("  %-34s %10.3f %8.2f %10.1e\n", isa_name(isa), 1e-9 * pairs / mine, its / mine,
+  printf("  %-34s %10.3f %8.2f %10.1e\n", what, 1e-9 * pairs / mine, its / mine,
          difference(&c->s, c->m, c->n, c->u, c->expected));
 }
 
@@ -162,30 +162,41 @@ static void contest_end(contest *c, double pairs)
   scene_free(&c->s);
 }
 
+/* Packed by this function */
+typedef sd_status pack(sd_packed *, sd_isa, const sd_law *, const sd_spheres *, int, int);
+
+static void compete(contest *c, pack *packing, sd_isa isa, const char *numbers)
+{
+  const double pairs = (double) c->n * c->n;
+  const int repeat = 1 + (int) (1e8 / pairs);
+  char what[40];
+  sd_packed p = {0};
+  if (packing(&p, isa, &RPY, &c->spheres, c->n, c->m) != SD_OK) abort();
+  for (int k = 0; k < RUNS; k++) {
+    double begin = cpu();
+    rival_all(c->m, c->s.x, c->s.a, c->rival, c->n, c->expected);
+    c->t[0][k] = cpu() - begin;
+    begin = cpu();
+    for (int r = 0; r < repeat; r++) sd_packed_share(&p, 0, 1, c->F, c->u);
+    c->t[1][k] = (cpu() - begin) / repeat;
+  }
+  snprintf(what, sizeof(what), "%s%s", isa_name(isa), numbers);
+  contest_tell(c, what, pairs);
+  sd_packed_free(&p);
+}
+
 static void bench_product(int n, int m)
 {
   contest c = contest_begin(n, m);
-  const double pairs = (double) n * n;
-  const int repeat = 1 + (int) (1e8 / pairs);
   printf("\nProduct, all pairs, %d polydisperse spheres, phi 0.2%s\n", n,
          m == 6 ? ", with torques" : "");
   head_of_products();
   for (int isa = SD_ISA_BASELINE; isa <= SD_ISA_AVX512; isa++) {
     if (!sd_isa_supported(isa)) continue;
-    sd_packed p = {0};
-    if (sd_packed_all(&p, isa, &RPY, &c.spheres, n, m) != SD_OK) abort();
-    for (int k = 0; k < RUNS; k++) {
-      double begin = cpu();
-      rival_all(m, c.s.x, c.s.a, c.rival, n, c.expected);
-      c.t[0][k] = cpu() - begin;
-      begin = cpu();
-      for (int r = 0; r < repeat; r++) sd_packed_share(&p, 0, 1, c.F, c.u);
-      c.t[1][k] = (cpu() - begin) / repeat;
-    }
-    contest_tell(&c, isa, pairs);
-    sd_packed_free(&p);
+    compete(&c, sd_packed_all, isa, "");
+    compete(&c, sd_packed_all_single, isa, ", floats");
   }
-  contest_end(&c, pairs);
+  contest_end(&c, (double) n * n);
 }
 
 /* The bare kernel alone, for unittest/bench/product_in_lammps.py: directed pairs per second. */
@@ -237,7 +248,7 @@ static void bench_list(int n, double neighbors, int m)
       for (int r = 0; r < repeat; r++) sd_packed_pairs(&p, &list.pairs, c.F, NULL, c.u);
       c.t[1][k] = (cpu() - begin) / repeat;
     }
-    contest_tell(&c, isa, pairs);
+    contest_tell(&c, isa_name(isa), pairs);
     sd_packed_free(&p);
   }
   sd_neighbors_free(&list);

@@ -50,6 +50,19 @@ def test_default_tolerance_is_one_in_a_thousand(simulation):
     assert 1e-3 / 1.7 < sim.residual <= 1e-3        # each substitution takes off a factor 0.625
 
 
+@pytest.mark.parametrize("edge, tolerance, far, words, floats", [
+    (8, "1e-3", "auto", "", True), (8, "1e-4", "auto", "", True), (8, "1e-3", "auto", "rotation yes", True),
+    (8, "9e-5", "1e-3", "", False), (7, "1e-3", "auto", "", False), (8, "1e-3", "9e-6", "", False),
+    (8, "1e-3", "auto", "wall zlo -9", False)])
+def test_products_of_loose_solves_are_in_single_precision(simulation, edge, tolerance, far, words, floats):
+    """One product: its digits are those of a tight far field, which is in double precision, or those of floats."""
+    spheres = cube(edge, np.random.default_rng(1).normal(size=(edge**3, 3)))
+    style = f"cut_off_distance inf visc {ETA} max_iter 1 relative_tolerance {tolerance} {words}"
+    loose, tight = (simulation(spheres, f"{style} far_field_tolerance {of}").run().drag for of in (far, "1e-9"))
+    assert largest_difference(loose, tight) < 2e-6
+    assert (loose == tight).all() == (not floats)
+
+
 @pytest.mark.hard_case("algorithm 1 where it diverges")
 def test_substitution_on_three_spheres_along_their_axis_stops_and_names_the_way_out(simulation):
     sim = simulation(touching_chain(3, ALONG), f"cut_off_distance inf visc {ETA} algorithm 1 strict")

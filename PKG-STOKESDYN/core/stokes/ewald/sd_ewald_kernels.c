@@ -1,7 +1,6 @@
 /* Kernels of the engine ewald, of doubles; sd_ewald_single_kernels.c: the same of floats */
-#include <stdint.h>
-
 #include "sd_ewald_internal.h"
+#include "sd_steps.h"
 #include "sd_tensor_lanes.h"
 
 #include "sd_ewald_near_kernel.h"

@@ -31,13 +31,16 @@ typedef enum { SD_VIEW_LIST, SD_VIEW_NEAR, SD_VIEW_ALL } sd_view;
 
 /* How the spheres interact: what is known before they are placed. law.range: of the taper. width 3
  * or 6 as in sd_product.h. ewald, slab: of the engines that split the sum, which have no other law than
- * RPY without taper, and walls of their own; second: of that with two levels. */
+ * RPY without taper, and walls of their own; second: of that with two levels. tolerance: error of a product
+ * of all pairs that does no harm, over the rms of F/(6 pi eta a); from SD_PRODUCT_SINGLE on it may be of
+ * floats. 0: none */
 typedef struct {
   sd_law law;
   int width;
   const sd_ewald *ewald;
   const sd_ewald_level *second;
   const sd_slab *slab;
+  double tolerance;
 } sd_mobility_how;
 
 /* The spheres of one solve. All that it points to outlives the solve, but for the groups, which view NEAR

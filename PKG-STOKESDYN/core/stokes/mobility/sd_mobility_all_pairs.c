@@ -27,7 +27,9 @@ static sd_status ap_place(void *state, const sd_mobility_scene *s)
   e->n_all = s->n_all;
   if (s->world.spread && !sd_reserve(&e->all, sizeof(double), doubles, &e->room))
     return SD_ENOMEMORY;
-  return sd_packed_all(&e->packed, SD_ISA_BEST, &s->how.law, &s->spheres, s->n_all, s->how.width);
+  const int loose = s->how.tolerance >= SD_PRODUCT_SINGLE * (1.0 - 1e-9);
+  return (loose ? sd_packed_all_single : sd_packed_all)(&e->packed, SD_ISA_BEST, &s->how.law, &s->spheres, s->n_all,
+                                                        s->how.width);
 }
 
 static sd_status ap_apply(void *state, const double *F, double *u)

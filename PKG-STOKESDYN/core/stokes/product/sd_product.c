@@ -1,10 +1,12 @@
 #include "sd_product.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "sd_linear.h"
 #include "sd_product_internal.h"
+#include "sd_real.h"
 #include "sd_room.h"
 
 /* In factors of 1 - q, so that no digits are lost where both go to 0 */
@@ -22,32 +24,57 @@ void sd_packed_free(sd_packed *p)
   memset(p, 0, sizeof(*p));
 }
 
-/* Lengths are multiplied by a power of two (exact) that brings the largest radius to 1 ... 2.
- * Returns whether the first guess of a root may then be in single precision: squares of spheres so
- * small or so far away that they leave its range want plain C. */
-static int find_scale(sd_packed *p)
+/* The spheres that take part, as they stand at the wall */
+typedef struct {
+  double largest, smallest, lo[3], hi[3];
+  /* all places are numbers */
+  int sound;
+} extent;
+
+static extent extent_of(const sd_packed *p)
 {
   const double *a = p->spheres.a;
-  double largest = 0.0, smallest = INFINITY, far = 0.0;
-  int sound = 1;
+  extent e = {0.0, INFINITY, {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 1};
   for (int i = 0; i < p->n; i++) {
     if (!(a[i] > 0.0)) continue;
-    largest = fmax(largest, a[i]);
-    smallest = fmin(smallest, a[i]);
+    e.largest = fmax(e.largest, a[i]);
+    e.smallest = fmin(e.smallest, a[i]);
     double x[3];
     sd_wall_stand(&p->law.wall, p->spheres.x + 3 * (long) i, a[i], x);
     for (int d = 0; d < 3; d++) {
-      const double c = fabs(x[d]);
-      sound = sound && c < INFINITY;
-      far = fmax(far, c);
+      e.sound = e.sound && fabs(x[d]) < INFINITY;
+      e.lo[d] = fmin(e.lo[d], x[d]);
+      e.hi[d] = fmax(e.hi[d], x[d]);
     }
   }
+  return e;
+}
+
+/* Lengths are multiplied by a power of two (exact) that brings the largest radius to 1 ... 2.
+ * Returns whether the first guess of a root may then be in single precision: squares of spheres so
+ * small or so far away that they leave its range want plain C. */
+static int find_scale(sd_packed *p, const extent *e)
+{
   p->scale = 1.0;
-  if (!sound || !(largest > 0.0) || !(largest < INFINITY)) return 0;
-  const int exponent = -ilogb(largest);
+  if (!e->sound || !(e->largest > 0.0) || !(e->largest < INFINITY)) return 0;
+  const int exponent = -ilogb(e->largest);
   if (abs(exponent) > 1000) return 0;
   p->scale = ldexp(1.0, exponent);
-  return far * p->scale < 1e15 && smallest * p->scale > 1e-14;
+  double far = 0.0;
+  for (int d = 0; d < 3; d++) far = fmax(far, fmax(fabs(e->lo[d]), fabs(e->hi[d])));
+  return far * p->scale < 1e15 && e->smallest * p->scale > 1e-14;
+}
+
+/* Do floats hold places and radii? The widest extent has less than 2^31 steps, each a power of two. */
+static int find_steps(sd_packed *p, const extent *e)
+{
+  double across = e->largest;
+  for (int d = 0; d < 3; d++) across = fmax(across, e->hi[d] - e->lo[d]);
+  if (!e->sound || p->law.wall.sign || !(across <= SD_PRODUCT_MOST_ACROSS * e->smallest)) return 0;
+  const double step = ldexp(1.0, ilogb(across * p->scale) - 30);
+  if (p->width == 6) p->step = step;
+  else p->scale /= step;
+  return 1;
 }
 
 /* Numbers of a sphere in the axes of the wall */
@@ -62,17 +89,24 @@ static void turn_to_wall(sd_packed *p)
   }
 }
 
-/* Which kernel, in which unit of length */
-static void begin_packing(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
-                          int width)
+enum { DOUBLES, FLOATS_IF_THEY_DO };
+
+/* Which kernel, in which unit of length; where the spheres are */
+static extent begin_packing(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
+                            int width, int numbers)
 {
   p->spheres = *s;
   p->law = *law;
   p->n = n;
   p->width = width;
+  p->unit = p->step = 1.0;
   isa = sd_isa_of(isa);
-  if (!find_scale(p)) isa = SD_ISA_PLAIN;
+  const extent e = extent_of(p);
+  const int in_range = find_scale(p, &e);
+  if (!in_range) isa = SD_ISA_PLAIN;
   const struct sd_kernels *kernels = SD_KERNELS_OF(sd_product, plain, isa);
+  if (in_range && numbers == FLOATS_IF_THEY_DO && find_steps(p, &e))
+    kernels = SD_KERNELS_OF(sd_product_single, plain, isa);
   p->kernel = width == 6 ? &kernels->torques : &kernels->forces;
   kernels = SD_KERNELS_OF(sd_wall, plain, isa);
   p->images = !law->wall.sign ? NULL : width == 6 ? &kernels->torques : &kernels->forces;
@@ -80,47 +114,79 @@ static void begin_packing(sd_packed *p, sd_isa isa, const sd_law *law, const sd_
   p->law.range *= p->scale;
   p->active = 0;
   for (int i = 0; i < n; i++) p->active += s->a[i] > 0.0;
+  return e;
 }
 
 /* Columns and rows that stand for nothing: no force, and far from everything. */
 static const double nowhere = 1e16;
 
+/* Number k of a column of places: in floats the step from the lowest one on */
+static void column_place(const sd_packed *p, void *column, long k, double x, double lowest)
+{
+  if (p->kernel->bytes == sizeof(double)) {
+    ((double *) column)[k] = x * p->scale;
+    return;
+  }
+  const uint32_t steps = (uint32_t) ((x - lowest) * (p->scale / p->step));
+  memcpy((float *) column + k, &steps, sizeof(steps));
+}
+
+/* A place far from everything; of floats, in a corner that no other is beyond */
+static void put_nowhere(const sd_packed *p, void *column, long k)
+{
+  const uint32_t last_step = 0x7fffffff;
+  if (p->kernel->bytes == sizeof(double)) ((double *) column)[k] = nowhere;
+  else memcpy((float *) column + k, &last_step, sizeof(last_step));
+}
+
 /* Columns, one array for each number, as vectors of several sources are read from them. Spheres
  * that take no part are left out here, which costs those that do nothing; `index` remembers who is
  * who. */
-sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
-                        int width)
+static sd_status pack_columns(sd_packed *p, const extent *e)
 {
-  begin_packing(p, isa, law, s, n, width);
-  const int lanes = p->kernel->lanes;
+  const sd_spheres *s = &p->spheres;
+  const int lanes = p->kernel->lanes, width = p->width;
+  const size_t bytes = p->kernel->bytes;
   p->padded = (p->active + lanes - 1) / lanes * lanes;
   const long column = (p->padded + 7) / 8 * 8; /* whole cache lines */
   double *next = sd_reserve_lines(&p->memory, (size_t) ((5 + 2 * width) * column), &p->room);
   if (!next) return SD_ENOMEMORY;
-  double **columns[] = {&p->x, &p->y, &p->z, &p->a};
+  void **columns[] = {&p->x, &p->y, &p->z, &p->a};
   for (int k = 0; k < 4; k++, next += column) *columns[k] = next;
   for (int k = 0; k < width; k++, next += column) p->f[k] = next;
   for (int k = 0; k < width; k++, next += column) p->u[k] = next;
   p->index = (int *) next;
   int k = 0;
-  for (int i = 0; i < n; i++) {
+  for (int i = 0; i < p->n; i++) {
     if (!(s->a[i] > 0.0)) continue;
     p->index[k] = i;
     double x[3];
-    sd_wall_stand(&law->wall, s->x + 3 * (long) i, s->a[i], x);
-    p->x[k] = x[0] * p->scale;
-    p->y[k] = x[1] * p->scale;
-    p->z[k] = x[2] * p->scale;
-    p->a[k] = s->a[i] * p->scale;
+    sd_wall_stand(&p->law.wall, s->x + 3 * (long) i, s->a[i], x);
+    for (int d = 0; d < 3; d++) column_place(p, *columns[d], k, x[d], e->lo[d]);
+    sd_put_number(p->a, bytes, k, s->a[i] * p->scale);
     k++;
   }
   for (; k < p->padded; k++) {
-    p->index[k] = n;
-    p->x[k] = p->y[k] = p->z[k] = nowhere;
-    p->a[k] = 0.0;
-    for (int d = 0; d < width; d++) p->f[d][k] = 0.0;
+    p->index[k] = p->n;
+    for (int d = 0; d < 3; d++) put_nowhere(p, *columns[d], k);
+    sd_put_number(p->a, bytes, k, 0.0);
+    for (int d = 0; d < width; d++) sd_put_number(p->f[d], bytes, k, 0.0);
   }
   return SD_OK;
+}
+
+sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
+                        int width)
+{
+  const extent e = begin_packing(p, isa, law, s, n, width, DOUBLES);
+  return pack_columns(p, &e);
+}
+
+sd_status sd_packed_all_single(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
+                               int width)
+{
+  const extent e = begin_packing(p, isa, law, s, n, width, FLOATS_IF_THEY_DO);
+  return pack_columns(p, &e);
 }
 
 /* Rows of eight numbers, a line of the cache, as neighbours come in no order: what is read of one
@@ -129,7 +195,7 @@ sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_sp
 sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
                          int width)
 {
-  begin_packing(p, isa, law, s, n, width);
+  begin_packing(p, isa, law, s, n, width, DOUBLES);
   const long rows = n + 1;
   p->row = sd_reserve_lines(&p->memory, (size_t) ((width == 6 ? 18 : 11) * rows), &p->room);
   if (!p->row) return SD_ENOMEMORY;
@@ -153,24 +219,49 @@ sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_s
   return SD_OK;
 }
 
-/* The kernels' sums are times 8 pi and in scaled lengths; torques go in times the scale. */
+/* The kernels' sums are times 8 pi, in scaled lengths and of scaled forces; torques go in times the
+ * scale. */
 static void take_sums(const sd_packed *p, int i, int k, double *u)
 {
-  const double unit = p->scale * p->spheres.w[i] / (8.0 * SD_PI), turn = unit * p->scale;
+  const double unit = p->scale * p->spheres.w[i] / (8.0 * SD_PI) / p->unit, turn = unit * p->scale;
   for (int d = 0; d < 3; d++) u[p->from[d]] = unit * p->sign[d] * p->u[d][k];
   for (int d = 3; d < p->width; d++) u[p->from[d]] = turn * p->sign[d] * p->u[d][k];
 }
 
-/* F of all spheres into the columns, sums to 0. The sphere's own w = 1/sqrt(eta) goes with its
- * force and its partner's with the sum: together 1/sqrt(eta_i eta_j). */
+/* What the kernels read of a force: the sphere's own w = 1/sqrt(eta) goes with its force and its
+ * partner's with the sum, together 1/sqrt(eta_i eta_j). */
+static double force_of(const sd_packed *p, double w, int d, const double *F)
+{
+  return (d < 3 ? w : w * p->scale) * p->sign[d] * F[p->from[d]];
+}
+
+/* The power of two for floats that brings the largest force to 1 ... 2, where they would not hold its
+ * products; else 1, which leaves their digits alone. */
+static double unit_of_forces(const sd_packed *p, const double *F)
+{
+  enum { HELD = 30 };
+  double largest = 0.0;
+  for (int k = 0; k < p->active; k++)
+    for (int d = 0; d < p->width; d++) {
+      const long i = p->index[k];
+      const double size = fabs(force_of(p, p->spheres.w[i], d, F + p->width * i));
+      if (size > largest) largest = size;
+    }
+  if (!(largest > 0.0 && largest < INFINITY)) return 1.0;
+  const int power = ilogb(largest);
+  return abs(power) <= HELD ? 1.0 : ldexp(1.0, power < -1022 ? 1022 : -power);
+}
+
+/* F of all spheres into the columns, sums to 0 */
 static void load_columns(sd_packed *p, const double *F)
 {
   const long m = p->width;
+  const size_t bytes = p->kernel->bytes;
+  p->unit = bytes == sizeof(double) ? 1.0 : unit_of_forces(p, F);
   for (int k = 0; k < p->active; k++) {
     const long i = p->index[k];
     const double w = p->spheres.w[i];
-    for (int d = 0; d < 3; d++) p->f[d][k] = w * p->sign[d] * F[m * i + p->from[d]];
-    for (int d = 3; d < m; d++) p->f[d][k] = w * p->scale * p->sign[d] * F[m * i + p->from[d]];
+    for (int d = 0; d < m; d++) sd_put_number(p->f[d], bytes, k, p->unit * force_of(p, w, d, F + m * i));
   }
   for (int d = 0; d < m; d++) memset(p->u[d], 0, sizeof(double) * (size_t) p->padded);
 }
@@ -192,9 +283,8 @@ static void load_rows(sd_packed *p, long begin, long end, const double *F)
   for (long i = begin; i < end; i++, F += m) {
     double *row = p->row + 8 * i;
     const double w = row[3] > 0.0 ? p->spheres.w[i] : 0.0;
-    for (int d = 0; d < 3; d++) row[4 + d] = w > 0.0 ? w * p->sign[d] * F[p->from[d]] : 0.0;
-    for (int d = 3; d < m; d++)
-      p->torque_row[4 * i + d - 3] = w > 0.0 ? w * p->scale * p->sign[d] * F[p->from[d]] : 0.0;
+    for (int d = 0; d < 3; d++) row[4 + d] = w > 0.0 ? force_of(p, w, d, F) : 0.0;
+    for (int d = 3; d < m; d++) p->torque_row[4 * i + d - 3] = w > 0.0 ? force_of(p, w, d, F) : 0.0;
   }
 }
 

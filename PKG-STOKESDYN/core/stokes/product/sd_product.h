@@ -92,16 +92,20 @@ typedef struct {
   int n;
   /* spheres with a > 0, gathered to the front of the columns; rounded up to whole vectors */
   int active, padded;
-  /* lengths below are times this power of two, so that radii are about 1 */
-  double scale;
+  /* lengths below are times this power of two, so that radii are about 1, or so that a step is where
+   * floats have forces alone; of floats, a step of places (sd_steps.h) in that length, and the power of
+   * two that forces are taken times, so that floats hold them */
+  double scale, step, unit;
   /* numbers 0 ... 5 of a sphere in the axes below, which are those of the wall: which of F or u
    * they are, and with which sign */
   int from[6];
   double sign[6];
   /* [padded] sphere of each column */
   int *index;
-  /* columns [padded]; f = w F, u = sums; then those of the torques */
-  double *x, *y, *z, *a, *f[6], *u[6];
+  /* columns [padded], of double or float; f = w F; then those of the torques */
+  void *x, *y, *z, *a, *f[6];
+  /* sums, of double */
+  double *u[6];
   /* rows [8 (n+1)] x y z a, then w F, and [4 (n+1)] w T; the last takes the place of missing
    * neighbours */
   double *row, *torque_row;
@@ -115,6 +119,14 @@ void sd_packed_free(sd_packed *p);
  * and is kept. SD_OK or SD_ENOMEMORY. */
 sd_status sd_packed_all(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
                         int width);
+/* The same for products that need no error below SD_PRODUCT_SINGLE, over the rms of w^2 F/(6 pi a): blocks
+ * are of floats, sums over spheres of doubles. Both spheres of a pair have the same block. In doubles with a
+ * wall, and where spheres stand farther apart than SD_PRODUCT_MOST_ACROSS of the smallest radius, or one is
+ * so large. */
+#define SD_PRODUCT_SINGLE 1e-5
+#define SD_PRODUCT_MOST_ACROSS 4096.0
+sd_status sd_packed_all_single(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
+                               int width);
 sd_status sd_packed_list(sd_packed *p, sd_isa isa, const sd_law *law, const sd_spheres *s, int n,
                          int width);
 

@@ -6,9 +6,11 @@
 
 /* One kind of product. Sums are times 8 pi and without w of the target; lengths are scaled.
  *   symmetric   columns, u += the part's share of all pairs
- *   list        rows, u += */
+ *   list        rows, u +=; NULL: of floats there is none */
 struct sd_kernel {
-  /* doubles of a vector: padding of the columns */
+  /* of a number of the columns, but for those of u, which are of doubles */
+  size_t bytes;
+  /* numbers of a vector: padding of the columns */
   int lanes;
   void (*symmetric)(const sd_packed *p, int part, int parts);
   void (*list)(const sd_packed *p, const sd_pairs *pairs);
@@ -20,6 +22,7 @@ struct sd_kernels {
 
 /* sd_wall: what images add, a sphere's own among them */
 SD_KERNEL_TABLES(struct sd_kernels, sd_product);
+SD_KERNEL_TABLES(struct sd_kernels, sd_product_single);
 SD_KERNEL_TABLES(struct sd_kernels, sd_wall);
 
 #endif

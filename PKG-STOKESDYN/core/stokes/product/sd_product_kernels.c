@@ -1,4 +1,4 @@
-/* Kernels of the fast product. The block of a pair (sd_tensor_lanes.h) is the same for both of its
+/* Kernels of the fast product, of doubles; sd_product_single_kernels.c: the same of floats. The block of a pair (sd_tensor_lanes.h) is the same for both of its
  * spheres: the symmetric kernels compute it once. */
 #include "sd_product_loops.h"
 
@@ -35,15 +35,16 @@ INLINE void torques_block(const law *w, vec r2, vec ai, vec aj, vec squares, gra
 /* The lane in which a sphere meets itself takes no part. */
 NOT_INLINE void leave_out_self(int lane, vec *f, vec *h)
 {
-  const yes_no self = (vec) LANEWISE(NUMBER, 0) == all((double) lane);
+  const yes_no self = (vec) LANEWISE(NUMBER, 0) == all((real) lane);
   *f = where(self, all(0.0), *f);
   *h = where(self, all(0.0), *h);
 }
 
+/* Of floats in steps as they are: no length that forces need leaves their range. */
 INLINE void add_forces(const law *w, int both, int self, const place *i, const place *j,
                        const vec *F, const vec *G, vec *u, vec *v)
 {
-  const vec dx = i->x - j->x, dy = i->y - j->y, dz = i->z - j->z;
+  const vec dx = steps_between(i->x, j->x), dy = steps_between(i->y, j->y), dz = steps_between(i->z, j->z);
   const vec r2 = dx * dx + dy * dy + dz * dz;
   vec f, h;
   forces_block(w, r2, i->a, j->a, i->a * i->a + j->a * j->a, &f, &h);
@@ -63,7 +64,8 @@ INLINE void add_forces(const law *w, int both, int self, const place *i, const p
 INLINE void add_torques(const law *w, int both, int self, const place *i, const place *j,
                         const vec *F, const vec *G, vec *u, vec *v)
 {
-  const vec dx = i->x - j->x, dy = i->y - j->y, dz = i->z - j->z;
+  const vec dx = length_between(i->x, j->x, w->step), dy = length_between(i->y, j->y, w->step);
+  const vec dz = length_between(i->z, j->z, w->step);
   const vec r2 = dx * dx + dy * dy + dz * dz;
   grand b;
   torques_block(w, r2, i->a, j->a, i->a * i->a + j->a * j->a, &b);
@@ -77,8 +79,16 @@ INLINE void add_torques(const law *w, int both, int self, const place *i, const 
   if (both) grand_add(&b, -b.cij, -b.cji, dx, dy, dz, F, v);
 }
 
-DEFINE_LOOPS(symmetric, list, 3, MOST_TARGETS, 0, add_forces)
-DEFINE_LOOPS(grand_symmetric, grand_list, 6, 1, 0, add_torques)
+DEFINE_SYMMETRIC(symmetric, 3, MOST_TARGETS, add_forces)
+DEFINE_SYMMETRIC(grand_symmetric, 6, 1, add_torques)
 
-const struct sd_kernels SD_KERNELS(sd_product) = {{LANES, symmetric, list},
-                                                  {LANES, grand_symmetric, grand_list}};
+#ifdef SD_SINGLE
+const struct sd_kernels SD_KERNELS(sd_product_single) = {{sizeof(real), LANES, symmetric, NULL},
+                                                         {sizeof(real), LANES, grand_symmetric, NULL}};
+#else
+DEFINE_LIST(list, 3, 0, add_forces)
+DEFINE_LIST(grand_list, 6, 0, add_torques)
+
+const struct sd_kernels SD_KERNELS(sd_product) = {{sizeof(real), LANES, symmetric, list},
+                                                  {sizeof(real), LANES, grand_symmetric, grand_list}};
+#endif

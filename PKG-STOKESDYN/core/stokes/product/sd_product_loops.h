@@ -1,29 +1,29 @@
 /* The loops over pairs that all kernels of the product share: a file of kernels says what one pair
- * of vectors makes of forces (pair_sum), and ends in DEFINE_LOOPS for each width. For sources only. */
+ * of vectors makes of forces (pair_sum), and ends in DEFINE_SYMMETRIC and DEFINE_LIST for each width. For
+ * sources only. */
 #ifndef SD_PRODUCT_LOOPS_H
 #define SD_PRODUCT_LOOPS_H
 
 #include "sd_product_internal.h"
+#include "sd_steps.h"
 #include "sd_tensor_lanes.h"
 
-/* The law of a product. All loops have a copy for RPY without taper as a constant: a branch on the
- * law, though it always goes the same way, would cost those of forces 4 %. */
+/* The law of a product. All loops have a copy for RPY without taper as constants: a branch on the
+ * law, though it always goes the same way, would cost those of forces 4 %. step: of sd_steps.h */
 typedef struct {
   sd_tensor tensor;
   sd_taper taper;
-  vec inverse_range;
+  vec inverse_range, step;
 } law;
-
-static const law rpy = {.tensor = SD_TENSOR_RPY, .taper = SD_TAPER_NONE};
 
 static int is_rpy(const sd_packed *p)
 {
-  return p->law.tensor == rpy.tensor && p->law.taper == rpy.taper;
+  return p->law.tensor == SD_TENSOR_RPY && p->law.taper == SD_TAPER_NONE;
 }
 
-static inline law law_of(const sd_packed *p)
+static inline law law_of(const sd_packed *p, sd_tensor tensor, sd_taper taper)
 {
-  return (law){p->law.tensor, p->law.taper, all(1.0 / p->law.range)};
+  return (law){tensor, taper, all((real) (1.0 / p->law.range)), all((real) p->step)};
 }
 
 /* sd_taper_factor at the distance whose square is r2 */
@@ -46,15 +46,21 @@ typedef void pair_sum(const law *w, int both, int self, const place *i, const pl
 
 /* Sources are taken in chunks that stay in the first-level cache while all targets pass: sixteen
  * columns, those with torques, of so many spheres are 16 KiB, half of it. */
-enum { CHUNK = 256, GRAND_CHUNK = 128 };
+enum { CHUNK = 2048 / sizeof(real), GRAND_CHUNK = CHUNK / 2 };
 /* Targets at a time: what is loaded serves so often. With torques the registers are full with one. */
 enum { MOST_TARGETS = LANES > 1 ? 2 : 1 };
 
+/* Sums of the sources of a chunk while targets pass: source j's is of[k][j - begin]. */
+typedef struct {
+  real *of[6];
+  int begin;
+} chunk_sums;
+
 /* Targets from i on against the vectors of sources from j0 to j1 */
 INLINE void tile(int width, int targets, pair_sum *add, const law *w, int both, const sd_packed *p,
-                 int i, int j0, int j1)
+                 const chunk_sums *sums, int i, int j0, int j1)
 {
-  const double *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
+  const real *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
   place target[MOST_TARGETS];
   vec F[MOST_TARGETS][6], u[MOST_TARGETS][6], G[6], v[6];
 #pragma GCC unroll 2
@@ -62,7 +68,7 @@ INLINE void tile(int width, int targets, pair_sum *add, const law *w, int both, 
     target[t] = (place){all(px[i + t]), all(py[i + t]), all(pz[i + t]), all(pa[i + t])};
 #pragma GCC unroll 6
     for (int k = 0; k < width; k++) {
-      F[t][k] = all(p->f[k][i + t]);
+      F[t][k] = all(((const real *) p->f[k])[i + t]);
       u[t][k] = all(0.0);
     }
   }
@@ -70,20 +76,64 @@ INLINE void tile(int width, int targets, pair_sum *add, const law *w, int both, 
     const place source = {load(px + j), load(py + j), load(pz + j), load(pa + j)};
 #pragma GCC unroll 6
     for (int k = 0; k < width; k++) {
-      G[k] = load(p->f[k] + j);
-      if (both) v[k] = load(p->u[k] + j);
+      G[k] = load((const real *) p->f[k] + j);
+      if (both) v[k] = load(sums->of[k] + j - sums->begin);
     }
 #pragma GCC unroll 2
     for (int t = 0; t < targets; t++)
       add(w, both, both ? -1 : i + t - j, target + t, &source, F[t], G, u[t], v);
 #pragma GCC unroll 6
-    for (int k = 0; k < width && both; k++) store(p->u[k] + j, v[k]);
+    for (int k = 0; k < width && both; k++) store(sums->of[k] + j - sums->begin, v[k]);
   }
 #pragma GCC unroll 2
   for (int t = 0; t < targets; t++)
 #pragma GCC unroll 6
     for (int k = 0; k < width; k++) p->u[k][i + t] += total(u[t][k]);
 }
+
+#ifdef SD_SINGLE
+/* Floats add up what one group of targets makes, in memory of their own; then doubles go on. */
+typedef struct {
+  ALIGNED(64) real of[6][CHUNK];
+} chunk_room;
+
+static chunk_sums sums_of_chunk(const sd_packed *p, int width, int begin, chunk_room *room)
+{
+  chunk_sums s = {.begin = begin};
+  (void) p;
+  for (int k = 0; k < width; k++) s.of[k] = memset(room->of[k], 0, sizeof(room->of[k]));
+  return s;
+}
+
+/* Into the columns of the sources up to `end`; nothing is held then. */
+static void give_sums(const sd_packed *p, int width, const chunk_sums *s, int end)
+{
+  for (int k = 0; k < width; k++) {
+    double *restrict u = p->u[k] + s->begin;
+    real *restrict held = s->of[k];
+    for (int j = 0; j < end - s->begin; j++) {
+      u[j] += held[j];
+      held[j] = 0;
+    }
+  }
+}
+#else
+/* Doubles add to the columns themselves. */
+typedef int chunk_room;
+
+static chunk_sums sums_of_chunk(const sd_packed *p, int width, int begin, chunk_room *room)
+{
+  chunk_sums s = {.begin = begin};
+  (void) room;
+  for (int k = 0; k < width; k++) s.of[k] = p->u[k] + begin;
+  return s;
+}
+
+static void give_sums(const sd_packed *p, int width, const chunk_sums *s, int end)
+{
+  (void) p, (void) width, (void) s, (void) end;
+}
+#endif
 
 /* Groups of LANES columns: does the pair of a group with any later one belong to this part? In
  * turn, there and back, so that the sums of (groups - I) over a part's groups are equal. */
@@ -100,19 +150,38 @@ INLINE void share_of_pairs(int width, int targets, pair_sum *add, const law *w, 
                            int part, int parts)
 {
   const int chunk = width == 6 ? GRAND_CHUNK : CHUNK;
+  chunk_room room;
   for (int c = 0; c < p->padded; c += chunk) {
     const int end = c + chunk < p->padded ? c + chunk : p->padded;
+    const chunk_sums sums = sums_of_chunk(p, width, c, &room);
     for (int i = 0; i < end; i += LANES) {
       if (!mine(i / LANES, part, parts)) continue;
       const int from = i + LANES > c ? i + LANES : c;
       for (int t = i; t < i + LANES; t += targets) {
-        if (i >= c) tile(width, targets, add, w, 0, p, t, i, i + LANES);
-        if (from < end) tile(width, targets, add, w, 1, p, t, from, end);
+        if (i >= c) tile(width, targets, add, w, 0, p, &sums, t, i, i + LANES);
+        if (from < end) tile(width, targets, add, w, 1, p, &sums, t, from, end);
       }
+      give_sums(p, width, &sums, end);
     }
+    give_sums(p, width, &sums, end);
   }
 }
 
+/* symmetric of struct sd_kernel, with this name */
+#define DEFINE_SYMMETRIC(name, width, targets, add)                             \
+  static void name(const sd_packed *p, int part, int parts)                     \
+  {                                                                             \
+    const law w = law_of(p, p->law.tensor, p->law.taper);                       \
+    const law rpy = law_of(p, SD_TENSOR_RPY, SD_TAPER_NONE);                    \
+    if (is_rpy(p))                                                              \
+      share_of_pairs(width, targets, add, &rpy, p, part, parts);                \
+    else                                                                        \
+      share_of_pairs(width, targets, add, &w, p, part, parts);                  \
+  }
+
+/* --- by list, in doubles alone --- */
+
+#ifndef SD_SINGLE
 /* LANES neighbours from k on; what is missing before end is the row that stands for nothing. From
  * before the first: the sphere itself alone */
 INLINE const int *neighbors(const sd_pairs *pairs, int i, long k, int nothing, int *rest)
@@ -156,23 +225,17 @@ INLINE void rows_of_pairs(int width, int itself, pair_sum *add, const law *w, co
   }
 }
 
-/* symmetric and list of struct sd_kernel, with these names */
-#define DEFINE_LOOPS(symmetric, list, width, targets, itself, add)              \
-  static void symmetric(const sd_packed *p, int part, int parts)                \
+/* list of struct sd_kernel, with this name */
+#define DEFINE_LIST(name, width, itself, add)                                   \
+  static void name(const sd_packed *p, const sd_pairs *pairs)                   \
   {                                                                             \
-    const law w = law_of(p);                                                    \
-    if (is_rpy(p))                                                              \
-      share_of_pairs(width, targets, add, &rpy, p, part, parts);                \
-    else                                                                        \
-      share_of_pairs(width, targets, add, &w, p, part, parts);                  \
-  }                                                                             \
-  static void list(const sd_packed *p, const sd_pairs *pairs)                   \
-  {                                                                             \
-    const law w = law_of(p);                                                    \
+    const law w = law_of(p, p->law.tensor, p->law.taper);                       \
+    const law rpy = law_of(p, SD_TENSOR_RPY, SD_TAPER_NONE);                    \
     if (is_rpy(p))                                                              \
       rows_of_pairs(width, itself, add, &rpy, p, pairs);                        \
     else                                                                        \
       rows_of_pairs(width, itself, add, &w, p, pairs);                          \
   }
+#endif
 
 #endif

@@ -113,8 +113,10 @@ INLINE void add_grand_images(const law *w, int both, int self, const place *i, c
   if (both) image_add_grand(&m, &of_j, &of_i, -m.x, -m.y, m.c[4], m.c[3], F, v);
 }
 
-DEFINE_LOOPS(symmetric, list, 3, 1, 1, add_images)
-DEFINE_LOOPS(grand_symmetric, grand_list, 6, 1, 1, add_grand_images)
+DEFINE_SYMMETRIC(symmetric, 3, 1, add_images)
+DEFINE_SYMMETRIC(grand_symmetric, 6, 1, add_grand_images)
+DEFINE_LIST(list, 3, 1, add_images)
+DEFINE_LIST(grand_list, 6, 1, add_grand_images)
 
-const struct sd_kernels SD_KERNELS(sd_wall) = {{LANES, symmetric, list},
-                                               {LANES, grand_symmetric, grand_list}};
+const struct sd_kernels SD_KERNELS(sd_wall) = {{sizeof(real), LANES, symmetric, list},
+                                               {sizeof(real), LANES, grand_symmetric, grand_list}};

@@ -28,29 +28,6 @@ static long search(const double *centre, long stride, const int *ranges, int cou
   return many;
 }
 
-/* A coordinate of one place less that of others */
-INLINE vec difference(vec a, vec b, vec unit)
-{
-  (void) unit;
-  return a - b;
-}
-#elif LANES == 1
-/* Whole numbers without a sign, whose difference is one with a sign. */
-INLINE vec difference(vec a, vec b, vec unit)
-{
-  uint32_t m, n;
-  memcpy(&m, &a, sizeof(m));
-  memcpy(&n, &b, sizeof(n));
-  return (float) (int32_t) (m - n) * unit;
-}
-#else
-typedef uint32_t whole_numbers __attribute__((vector_size(VEC_BYTES)));
-
-INLINE vec difference(vec a, vec b, vec unit)
-{
-  const yes_no steps = (yes_no) ((whole_numbers) a - (whole_numbers) b);
-  return __builtin_convertvector(steps, vec) * unit;
-}
 #endif
 
 #ifdef SD_SINGLE
@@ -122,8 +99,8 @@ INLINE void near_forces(int equal, int degree, const sd_near_part *p)
       const int *j = p->neighbor + k;
       vec at[8], *F = at + 4, f, h, D[4];
       gather_eight(rows, j, at);
-      const vec dx = difference(x, at[0], unit), dy = difference(y, at[1], unit);
-      const vec dz = difference(z, at[2], unit), aj = at[3];
+      const vec dx = length_between(x, at[0], unit), dy = length_between(y, at[1], unit);
+      const vec dz = length_between(z, at[2], unit), aj = at[3];
       const vec r2 = dx * dx + dy * dy + dz * dz, t = smaller(r2, range2) * twice - one;
       if (equal && SINGLE)
         block_alike(r2, &of_all, &f, &h);
@@ -181,8 +158,8 @@ INLINE void near_torques(int equal, int degree, const sd_near_part *p)
       grand b;
       gather_eight(rows, j, at);
       gather(turns, 4, j, F + 3);
-      const vec dx = difference(x, at[0], unit), dy = difference(y, at[1], unit);
-      const vec dz = difference(z, at[2], unit), aj = at[3];
+      const vec dx = length_between(x, at[0], unit), dy = length_between(y, at[1], unit);
+      const vec dz = length_between(z, at[2], unit), aj = at[3];
       const vec r2 = dx * dx + dy * dy + dz * dz, t = smaller(r2, range2) * twice - one;
       if (equal && SINGLE)
         grand_alike(r2, &of_all, &b);
