@@ -8,6 +8,7 @@
 
 #include "atom.h"
 #include "domain.h"
+#include "update.h"
 
 #include <algorithm>
 
@@ -80,15 +81,30 @@ void BodySteps::step_clumps(Hydrodynamics &hydro, const Clumps &from, const Step
 
 // --- from where they stand -----------------------------------------------------------------------------------
 
-void BodySteps::go(int i, const double step[3])
+void BodySteps::go(int i, const double step[3], double weight, double scale, const double *noise)
 {
   for (int d = 0; d < 3; d++) atom->x[i][d] += step[d];
   note(i, step);
+  directions.step(i, update->dt, weight, scale, noise);
 }
 
 void BodySteps::go(Hydrodynamics &hydro, const Step &of_clump)
 {
   step_clumps(hydro, clumps_now(hydro), of_clump, WHOLE);
+}
+
+void BodySteps::follow_moved(const Hydrodynamics &hydro)
+{
+  if (!drives.moves_any() || !atom->omega_flag) return;
+  for (int i : hydro.ambient.who()) {
+    if (!drives.is_moved(i)) continue;
+    directions.turn_moved(i, atom->omega[i], update->dt);
+    if (!hydro.settings.rigid.on || atom->molecule[i] == 0) continue;
+    double w[3], R[9];
+    for (int d = 0; d < 3; d++) w[d] = update->dt * atom->omega[i][d];
+    sd_rotation(w, R);
+    sd_turn_quaternion(R, rows.give(i) + quaternion);
+  }
 }
 
 // --- from where they stood -----------------------------------------------------------------------------------
@@ -105,7 +121,9 @@ Places BodySteps::places(const Hydrodynamics &hydro) const
 
 void BodySteps::begin(const Hydrodynamics &hydro)
 {
-  began = {hydro.ambient.who(), hydro.poses().lone(), places(hydro), box_of(domain)};
+  const Ambient &ambient = hydro.ambient;
+  began = {ambient.who(),        hydro.poses().lone(), places(hydro), box_of(domain),
+           ambient.box_motion(), ambient.jumps() != nullptr};
   const Clumps now = clumps_now(hydro);
   kept = {now.all, now.x, now.steps, {}};
   std::copy_n(now.h, 6, kept.h);
@@ -130,9 +148,9 @@ void BodySteps::go(Hydrodynamics &hydro, const Ride &ride, const Places &there, 
   for (size_t i : began.lone) {
     const double *v = &V.atoms[6 * i], beyond_box[3] = {ride.t * v[0], ride.t * v[1], ride.t * v[2]};
     double move[6];
-    moved(stays((int) i), v, &there.atoms[3 * i], &began.x.atoms[3 * i], move);
+    moved(drives.stays((int) i), v, &there.atoms[3 * i], &began.x.atoms[3 * i], move);
     for (size_t d = 0; d < 3; d++) atom->x[i][d] += move[d];
-    if (is_held((int) i)) continue;
+    if (drives.is_held((int) i)) continue;
     directions.turn((int) i, move + 3, 1.0);
     if (extent == WHOLE) note((int) i, beyond_box);
   }
@@ -144,6 +162,34 @@ void BodySteps::go(Hydrodynamics &hydro, const Ride &ride, const Places &there, 
     return s;
   };
   step_clumps(hydro, kept.clumps(), step, extent);
+}
+
+void BodySteps::aside(Hydrodynamics &hydro, const Moves &W, double sign)
+{
+  go(hydro, {sign}, began.x, W, PART);
+}
+
+void BodySteps::half(Hydrodynamics &hydro, const Moves &V)
+{
+  const double t = 0.5 * update->dt;
+  half_way = box_later(began.flow, began.box, t);
+  if (began.flow.deforms) put_box(domain, half_way);
+  go(hydro, {t, began.carried, began.box, began.box, half_way, began.flow}, began.x, V, PART);
+}
+
+void BodySteps::middle(const Hydrodynamics &hydro)
+{
+  found_at = places(hydro);
+  if (began.flow.deforms) put_box(domain, began.box);
+}
+
+void BodySteps::whole(Hydrodynamics &hydro, const Moves &V)
+{
+  const Ambient &ambient = hydro.ambient;
+  bring_box_to_this_step(lmp);
+  const Ride all = {update->dt,     ambient.jumps() != nullptr, began.box, half_way,
+                    box_of(domain), ambient.box_motion()};
+  go(hydro, all, found_at, V, WHOLE);
 }
 
 }    // namespace StokesDyn

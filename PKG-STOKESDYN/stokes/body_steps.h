@@ -5,9 +5,8 @@
 #define SD_BODY_STEPS_H
 
 #include "deforming_box.h"
-#include "directions.h"
+#include "drives.h"
 #include "hydrodynamics.h"
-#include "keyword_group.h"
 #include "rows_fix.h"
 
 #include <functional>
@@ -22,25 +21,29 @@ struct Places {
 
 class BodySteps : protected LAMMPS_NS::Pointers {
  public:
-  /* held: do not go; pinned: turn only. Columns from `quaternion` on of `rows`: by which the clump of a
-   * sphere has turned since the fix was given */
-  BodySteps(LAMMPS_NS::LAMMPS *lmp, const KeywordGroup &held, const KeywordGroup &pinned,
-            Directions &directions, AtomArray &rows, int quaternion) :
-      Pointers(lmp), held(held), pinned(pinned), directions(directions), rows(rows), quaternion(quaternion)
+  /* Columns from `quaternion` on of `rows`: by which the clump of a sphere has turned since the fix was
+   * given */
+  BodySteps(LAMMPS_NS::LAMMPS *lmp, const Drives &drives, Directions &directions, AtomArray &rows,
+            int quaternion) :
+      Pointers(lmp), drives(drives), directions(directions), rows(rows), quaternion(quaternion)
   {
   }
 
-  bool is_held(int i) const { return atom->mask[i] & held.bit; }
-  /* in its place, or as told */
-  bool stays(int i) const { return atom->mask[i] & (held.bit | pinned.bit); }
   /* In two dimensions nobody leaves the plane, or turns but about its normal. V: velocity, with width 6
    * angular velocity; or a move. */
   void keep_in_plane(double *V, size_t width) const;
 
+  /* Is there anything but clumps that turns? Then what a solve has found of atom i: its angular velocity, and
+   * that again, nullptr: it has no direction */
+  bool turns() const { return directions.on(); }
+  void look(int i, const double W[3]) { directions.look(i, W); }
+  const double *spin(int i) const { return directions.on() ? directions.turning[i] : nullptr; }
+
   // --- from where they stand
 
-  /* A sphere that is in no clump */
-  void go(int i, const double step[3]);
+  /* A sphere that is in no clump. Its direction turns by W, whose change since the step before counts by
+   * weight, and by noise [3] times scale. */
+  void go(int i, const double step[3], double weight, double scale, const double *noise);
   /* A displacement and a turn, move [6], of a point at centre [3] in the axes of the shape; place [3]:
    * where the centroid is put, for whoever wants that, else nullptr */
   struct ClumpStep {
@@ -49,36 +52,48 @@ class BodySteps : protected LAMMPS_NS::Pointers {
   };
   using Step = std::function<ClumpStep(size_t c)>;
   void go(Hydrodynamics &, const Step &of_clump);
+  /* Those of fix move have gone by now: directions and clumps turn as it says. */
+  void follow_moved(const Hydrodynamics &);
 
   // --- from where they stood when the step began; nobody migrates in between
 
-  /* Who takes part, and who of them are in no clump; places, directions, the box */
+  /* Who takes part, and who of them are in no clump; places, directions; the box, how it moves, and does the
+   * flow take it along? */
   struct Start {
     std::vector<int> who, lone;
     Places x;
     sd_box box;
+    BoxMotion flow;
+    bool carried;
   };
   void begin(const Hydrodynamics &);
   const Start &start() const { return began; }
-  Places places(const Hydrodynamics &) const;
   /* All but those of fix move stand there again. */
   void back();
-  /* By velocities V that are those of the places `there` */
-  enum Extent { PART, WHOLE };
-  void go(Hydrodynamics &, const Ride &ride, const Places &there, const Moves &V, Extent extent);
+  /* By W times a sign, in the box that stands */
+  void aside(Hydrodynamics &, const Moves &W, double sign);
+  /* Half the step by velocities V of its start, in the box of its middle, which is LAMMPS's until middle() */
+  void half(Hydrodynamics &, const Moves &V);
+  /* The velocities of the step are those of where bodies stand now. */
+  void middle(const Hydrodynamics &);
+  /* All of it, by these, in the box of its end */
+  void whole(Hydrodynamics &, const Moves &V);
 
   /* In whole steps since rest(): the square of the largest displacement over radius, of this rank */
   double farthest() const { return displaced; }
   void rest() { displaced = 0.0; }
 
  private:
-  const KeywordGroup &held, &pinned;
+  const Drives &drives;
   Directions &directions;
   AtomArray &rows;
   const int quaternion;
   double displaced = 0.0;
 
   Start began;
+  /* the middle of the step: where velocities are found, and its box */
+  Places found_at;
+  sd_box half_way = {};
   std::vector<double> mu;
   /* Clumps, their spheres x [3 members] side by side, each so many edges h [6] of the box away from its
    * atom: all as in WholeClumps, where they stand now; or kept, to go from there later */
@@ -100,7 +115,10 @@ class BodySteps : protected LAMMPS_NS::Pointers {
    * this is a whole step */
   enum { STEP, TURN = STEP + 3, TURNED = TURN + 9, COLUMNS = TURNED + 4 };
 
+  enum Extent { PART, WHOLE };
   static Clumps clumps_now(const Hydrodynamics &);
+  Places places(const Hydrodynamics &) const;
+  void go(Hydrodynamics &, const Ride &ride, const Places &there, const Moves &V, Extent extent);
   template <class Give>
   void step_clump(const ClumpPoses &, const Clumps &from, size_t c, const ClumpStep &goes, const double *box,
                   std::vector<double> &x, const Give &give) const;

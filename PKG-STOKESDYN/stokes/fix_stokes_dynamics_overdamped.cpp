@@ -1,6 +1,6 @@
-#include "boundary_checks.h"
 #include "fix_stokes_dynamics_overdamped.h"
 
+#include "boundary_checks.h"
 #include "copy.h"
 #include "fix_stokes_dynamics_field.h"
 #include "fixes.h"
@@ -11,7 +11,6 @@
 #include "sd_linear.h"
 
 #include "atom.h"
-#include "domain.h"
 #include "force.h"
 #include "modify.h"
 #include "output.h"
@@ -25,13 +24,13 @@ using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), adapt(), noise(voice), spin(voice), directions(lmp), torques(voice),
-    squirmers(voice, directions), motion(3), random(6), load(6),
-    steps(lmp, held, pinned, directions, output, TURNED), before(9), output(OUTPUTS)
+    RowsFix(lmp, narg, arg), adapt(), noise(voice), directions(lmp), drives(voice, directions), motion(3),
+    random(6), steps(lmp, drives, directions, output, TURNED), before(9), output(OUTPUTS)
 {
   Keywords in = keywords(narg, arg);
   in.elsewhere("visc fluid_velocity rotation multiblob lubrication rigid_clumps wall cut_off_distance",
                "pair_style stokes_dynamics");
+  const auto drive = [&] { drives.read(in); };
   in.parse({
       {"scheme",
        [&] {
@@ -49,11 +48,11 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
            in.refuse("tmin '" + text(adapt.tmin) + "' must not be above tmax '" +
                      text(adapt.tmax) + "'");
        }},
-      {"held", [&] { held.name = in.word(); }},
-      {"pin", [&] { pinned.name = in.word(); }},
-      {"spin", [&] { spin.read(in); }},
-      {"squirm", [&] { squirmers.read(in); }},
-      {"torque", [&] { torques.read(in); }},
+      {"held", drive},
+      {"pin", drive},
+      {"spin", drive},
+      {"squirm", drive},
+      {"torque", drive},
       {"temperature", [&] { noise.read_temperature(in); }},
       {"noise_tolerance", [&] { noise.read_tolerance(in); }},
   });
@@ -68,8 +67,8 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
   extscalar = 1;
   extvector = 0;
   global_freq = 1;
-  std::vector<RowsOfAtoms *> rows = {&motion, &random, &load, &before, &spin.slipping, &output};
-  if (directions.on()) rows.push_back(&directions.turning);
+  std::vector<RowsOfAtoms *> rows = {&motion, &random, &drives.before, &before, &drives.slipping(), &output};
+  if (steps.turns()) rows.push_back(&directions.turning);
   keep(rows, &output, true);
 }
 
@@ -82,49 +81,21 @@ int FixStokesDynamicsOverdamped::setmask()
 void FixStokesDynamicsOverdamped::init()
 {
   first = WAIT;
-  find_groups();
-  directions.init(moved_bits != 0);
-  refuse_inertia(voice, hydrodynamics().settings);
-  refuse_in_layer(voice, hydrodynamics().settings.scene.boundary,
-                  held.bit ? "keyword held" : pinned.bit ? "keyword pin" : "", noise.on());
+  Hydrodynamics &hydro = hydrodynamics();
+  refuse_inertia(voice, hydro.settings);
+  drives.init(hydro, groupbit);
+  const std::string holds = drives.holds();
+  refuse_in_layer(voice, hydro.settings.scene.boundary, holds, noise.on());
   look_at_neighbours();
-  spin.init(hydrodynamics(), held.bit | pinned.bit);
-  torques.init(hydrodynamics(), groupbit, held.bit);
-  squirmers.init(hydrodynamics(), groupbit);
-  const char *holds = held.bit ? "keyword held"
-      : pinned.bit             ? "keyword pin"
-      : spin.on()              ? "keyword spin"
-                               : "";
-  if (!scheme_given)
-    scheme = noise.on() && !noise.drift(hydrodynamics(), holds).empty() ? MIDPOINT : AB2;
-  if (noise.on()) noise.init(hydrodynamics(), {adapt.every > 0, scheme == MIDPOINT, holds});
-  if (scheme == MIDPOINT) refuse_midpoint(hydrodynamics());
-}
-
-void FixStokesDynamicsOverdamped::find_groups()
-{
-  held.find(voice.of("keyword held"));
-  pinned.find(voice.of("keyword pin"));
-  moved_bits = 0;
-  for (const Fix *fix : fixes_of(lmp, "move"))
-    if (held.bit) moved_bits |= fix->groupbit;
-  if (!pinned.bit) return;
-  if (const tagint both = first_atom(lmp, [this](int i) {
-        return steps.is_held(i) && (atom->mask[i] & pinned.bit);
-      }))
-    voice.fail("keyword pin: atom " + std::to_string(both) + " is in the group of keyword held as well: "
-               "it must be in one of them only");
-  const Hydrodynamics &hydro = hydrodynamics();
-  if (hydro.settings.rigid.apart())
-    voice.fail("keyword pin: it is for spheres and clumps that feel each other: use clumps_only no of "
-               "pair_style stokes_dynamics");
+  if (!scheme_given) scheme = noise.on() && !noise.drift(hydro, holds).empty() ? MIDPOINT : AB2;
+  if (noise.on()) noise.init(hydro, {adapt.every > 0, scheme == MIDPOINT, holds});
+  if (scheme == MIDPOINT) refuse_midpoint(hydro);
 }
 
 /* What torques and strokes are in this step */
 void FixStokesDynamicsOverdamped::find_drives(const Hydrodynamics &hydro)
 {
-  squirmers.find();
-  torques.find(directions, [&](int i) {
+  drives.find([&](int i) {
     return in_clump(hydro, i) ? output[i] + TURNED : (const double *) nullptr;
   });
 }
@@ -138,7 +109,7 @@ void FixStokesDynamicsOverdamped::look_at_neighbours()
                          fact(RESTING, hydro.ambient.settings.rests()),
                      [this](int i) {
                        if (!(atom->mask[i] & groupbit)) return 0u;
-                       return (unsigned) (steps.is_held(i) ? HELD : FREE);
+                       return (unsigned) (drives.is_held(i) ? HELD : FREE);
                      }, this);
 }
 
@@ -184,7 +155,7 @@ void FixStokesDynamicsOverdamped::set_up()
   const bool same_run = goes_on(hydro);
   if (!same_run || !causes_stand(hydro)) {
     before.clear();
-    load.clear();
+    drives.before.clear();
   }
   hydro.new_run(same_run);
   if (same_run && from_file && adapt.every && last.next_dt > 0.0) set_step(last.next_dt);
@@ -220,21 +191,9 @@ void FixStokesDynamicsOverdamped::final_integrate()
   find_drives(hydro);
   if (last.atoms != atom->natoms) {    // those that are left move as they did not before
     before.clear();
-    load.clear();
+    drives.before.clear();
   }
   find_velocities(hydro);
-}
-
-/* Those that fix move moves have the velocity that it gave them, others that are held have none. */
-sd_body_known FixStokesDynamicsOverdamped::given_velocity(int i, double *V) const
-{
-  std::fill_n(V, 6, 0.0);
-  if (atom->mask[i] & pinned.bit) return SD_BODY_PINNED;
-  if (!steps.is_held(i)) return spin.turns(i, V + 3) ? SD_BODY_SPUN : SD_BODY_FREE;
-  if (!is_moved(i)) return SD_BODY_HELD;
-  std::copy_n(dragged.empty() ? atom->v[i] : &dragged[3 * (size_t) i], 3, V);
-  if (atom->omega_flag) std::copy_n(atom->omega[i], 3, V + 3);
-  return SD_BODY_HELD;
 }
 
 void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
@@ -247,7 +206,7 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
   forget_before_change(causes);
   std::copy_n(causes, (int) CAUSES, last.causes);
   last.atoms = atom->natoms;
-  const size_t width = hydro.rotation() ? 6 : 3, turns = directions.on() ? width : 3;
+  const size_t width = hydro.rotation() ? 6 : 3, turns = steps.turns() ? width : 3;
   const Solve::Take take = [&, width](int i, const double *v, const double *F) {
     const double *fluid = hydro.ambient.velocity(i);
     double *row = output.give(i), V[6];
@@ -266,11 +225,8 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
       row[TURNED] = 1.0;
     if (!in_clump(hydro, i)) copy<3>(V, motion.give(i));
     if (width == 3) return;
-    directions.look(i, V + 3);
-    if (!spin.on()) return;
-    double pushed[6];
-    push_on(i, pushed);
-    spin.look(i, V + 3, F + 3, pushed + 3);
+    steps.look(i, V + 3);
+    drives.look(i, V + 3, F + 3, change_of_loads());
   };
   if (scheme == MIDPOINT && noise.on())
     find_noisy_velocities(hydro, take);
@@ -284,37 +240,6 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
     });
   velocity_change = change_of_velocities();
   last.step = update->ntimestep;
-}
-
-/* Force and torque on atom i, but for noise */
-void FixStokesDynamicsOverdamped::load_on(int i, double *FT) const
-{
-  std::fill_n(FT, 6, 0.0);
-  copy<3>(atom->f[i], FT);
-  if (atom->torque_flag) copy<3>(atom->torque[i], FT + 3);
-  torques.add(i, FT + 3);
-}
-
-/* What pushes atom i in this step: the same, extrapolated by scheme midpoint, with the torque on those
- * that slip */
-void FixStokesDynamicsOverdamped::push_on(int i, double *FT) const
-{
-  load_on(i, FT);
-  const double part = scheme == MIDPOINT ? weight(load.has(i)) : 0.0;
-  for (int d = 0; d < 6 && part > 0.0; d++) FT[d] += part * (FT[d] - load[i][d]);
-  if (spin.on()) spin.push(i, FT + 3);
-}
-
-/* For a solve: what pushes, but for noise, and who is held, and how */
-Given FixStokesDynamicsOverdamped::given() const
-{
-  Given known;
-  known.loads = [this](int i, double *FT) { push_on(i, FT); };
-  if (any_given())
-    known.held = [this](int i, double *V) { return given_velocity(i, V); };
-  if (squirmers.on())
-    known.swims = [this](int i, sd_squirmer_stroke &stroke) { return squirmers.stroke(i, stroke); };
-  return known;
 }
 
 /* Spheres of the group that are not selected have no velocity; those selected that are not in the
@@ -346,17 +271,7 @@ void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
 void FixStokesDynamicsOverdamped::post_integrate()
 {
   if (scheme == MIDPOINT) advance();
-  if (!moved_bits || !atom->omega_flag) return;
-  const Hydrodynamics &hydro = hydrodynamics();
-  for (int i : hydro.ambient.who()) {
-    if (!is_moved(i)) continue;
-    directions.turn_moved(i, atom->omega[i], update->dt);
-    if (!in_clump(hydro, i)) continue;
-    double w[3], R[9];
-    for (int d = 0; d < 3; d++) w[d] = update->dt * atom->omega[i][d];
-    sd_rotation(w, R);
-    sd_turn_quaternion(R, output.give(i) + TURNED);
-  }
+  steps.follow_moved(hydrodynamics());
 }
 
 bool FixStokesDynamicsOverdamped::in_clump(const Hydrodynamics &hydro, int i) const
@@ -381,7 +296,7 @@ void FixStokesDynamicsOverdamped::advance()
     if (hydro.settings.rigid.on) move_clumps(hydro);
   }
   last.dt = update->dt;
-  spin.advance();
+  drives.advance();
 }
 
 /* The next step as long as the fastest sphere allows; what must be told of it, as by fix dt/reset.

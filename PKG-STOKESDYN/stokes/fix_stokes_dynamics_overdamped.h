@@ -9,20 +9,13 @@
 #define SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 
 #include "body_steps.h"
-#include "deforming_box.h"
-#include "directions.h"
+#include "drives.h"
 #include "hydrodynamics.h"
-#include "keyword_group.h"
 #include "neighbours_stokes.h"
 #include "noise.h"
 #include "rows_fix.h"
-#include "spin.h"
-#include "squirmers.h"
-#include "torques.h"
 
 #include "sd_pose.h"
-
-#include <functional>
 
 namespace StokesDyn {
 
@@ -65,26 +58,15 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   } adapt;
 
   Noise noise;
-  Spin spin;
   Directions directions;
-  Torques torques;
-  Squirmers squirmers;
+  Drives drives;
 
   /* [3] velocity of a free sphere that is in no clump, by which the next step goes: LAMMPS's v is output,
    * and others may write to it */
   AtomRows motion;
   /* [6] schemes ab2 and euler: y of a free sphere (noise.h), of its turn only where it has a direction */
   AtomRows random;
-  /* [6] scheme midpoint: force and torque on a sphere in the step before */
-  AtomRows load;
-  /* those whose velocity is given, and those whose place is, empty: nobody; and the groups that fix move
-   * moves */
-  KeywordGroup held, pinned;
-  int moved_bits = 0;
   BodySteps steps;
-  /* scheme midpoint, of those that fix move moves, in its solve in the middle of a step: [3 nlocal] their
-   * velocity in this step; else empty */
-  std::vector<double> dragged;
   /* [9] U, of a clump and W, of the step before, and where the sphere, or the centroid of the clump,
    * was put by it; U is that of the point by which the clump is moved. When LAMMPS has made an image
    * of it since, v_old is that of the image. A clump has the row at its atom of lowest tag, which is
@@ -131,31 +113,20 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void check_selection(const Hydrodynamics &) const;
   Neighbourhood neighbourhood;
   void look_at_neighbours();
-  void find_groups();
   void find_drives(const Hydrodynamics &);
-  bool any_given() const { return held.bit || pinned.bit || spin.on(); }
-  bool is_moved(int i) const { return steps.is_held(i) && (atom->mask[i] & moved_bits); }
-  sd_body_known given_velocity(int i, double *V) const;
-  void load_on(int i, double *FT) const;
   bool in_clump(const Hydrodynamics &, int i) const;
   double weight(bool has) const;
+  double change_of_loads() const { return scheme == MIDPOINT ? weight(true) : 0.0; }
   void advance();
   void at_image(const Hydrodynamics &, const double *row, const double *place, double *old) const;
   void move_free(const Hydrodynamics &, int i);
   void move_clumps(Hydrodynamics &);
   void refuse_midpoint(const Hydrodynamics &) const;
-  void push_on(int i, double *FT) const;
-  Given given() const;
+  Given given() const { return drives.given(change_of_loads()); }
 
   // --- scheme midpoint (fix_stokes_dynamics_overdamped_midpoint.cpp)
 
-  /* The middle of a step, of which velocities are: places, the box */
-  struct {
-    Places places;
-    sd_box box;
-  } middle;
   Moves found(const Hydrodynamics &) const;
-  Ride half_step(const BoxMotion &flow, bool carried) const;
   void begin_midpoint(Hydrodynamics &, const Solve::Take &take);
   void move_by_midpoint(Hydrodynamics &);
   void make_step(Hydrodynamics &, const Moves &V);

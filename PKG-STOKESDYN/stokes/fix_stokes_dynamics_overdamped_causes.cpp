@@ -38,15 +38,15 @@ void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double
       for (int d = 0; d < 3; d++) fluid[d] -= of_box[d];
       sd_hash_add_row(tag, hydro.ambient.box_motion().gradient, 9, sums + 4);
     }
-    load_on(i, pushed);
+    drives.load(i, pushed);
     sd_hash_add_row(tag, pushed, 3, sums);
     if (atom->torque_flag) sd_hash_add_row(tag, pushed + 3, 3, sums + 2);
     sd_hash_add_row(tag, fluid, width, sums + 4);
     sd_hash_add_row(tag, &eta, 1, sums + 6);
-    const double kind = any_given() ? given_velocity(i, given) : SD_BODY_FREE;
+    const double kind = drives.holds_any() ? drives.known(i, given) : SD_BODY_FREE;
     if (kind != SD_BODY_FREE) sd_hash_add_row(tag, given, 6, sums + 8);
     sd_hash_add_row(tag, &kind, 1, sums + KINDS);
-    if (squirmers.stroke(i, stroke)) {
+    if (drives.stroke(i, stroke)) {
       const double row[6] = {stroke.e[0], stroke.e[1], stroke.e[2], stroke.B1, stroke.B2, stroke.beta};
       sd_hash_add_row(tag, row, 6, sums + 8);
     }
@@ -72,5 +72,5 @@ void FixStokesDynamicsOverdamped::forget_before_change(const double *causes)
   const double *now = causes + KINDS, *then = last.causes + KINDS;
   if (fabs(now[0] - then[0]) <= 1e-8 * std::max(now[1], then[1])) return;
   before.clear();
-  load.clear();
+  drives.before.clear();
 }

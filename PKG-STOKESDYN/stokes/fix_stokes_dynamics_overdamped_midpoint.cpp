@@ -23,7 +23,6 @@
 #include "keywords.h"
 
 #include "atom.h"
-#include "domain.h"
 #include "fix.h"
 #include "update.h"
 
@@ -39,7 +38,7 @@ void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) co
   if (hydro.settings.rigid.apart())
     keyword.fail("midpoint is for bodies that feel each other: use ab2 with clumps_only yes");
   if (hydro.settings.rigid.on &&
-      first_atom(lmp, [this](int i) { return is_moved(i) && atom->molecule[i] != 0; }))
+      first_atom(lmp, [this](int i) { return drives.is_moved(i) && atom->molecule[i] != 0; }))
     keyword.fail("midpoint needs the orientation of clumps in the middle of a step, where fix move "
                  "does not give that of keyword held: let them rest, or move spheres");
   const Fix *deform = fix_like(lmp, "^deform");
@@ -61,8 +60,8 @@ Moves FixStokesDynamicsOverdamped::found(const Hydrodynamics &hydro) const
   const BodySteps::Start &start = steps.start();
   for (size_t i : start.lone) {
     std::copy_n(motion[i], 3, &V.atoms[6 * i]);
-    if (directions.on()) std::copy_n(directions.turning[i], 3, &V.atoms[6 * i + 3]);
-    for (size_t d = 0; d < 3 && is_moved(i); d++)
+    if (const double *W = steps.spin((int) i)) std::copy_n(W, 3, &V.atoms[6 * i + 3]);
+    for (size_t d = 0; d < 3 && drives.is_moved(i); d++)
       V.atoms[6 * i + d] = (atom->x[i][d] - start.x.atoms[3 * i + d]) / update->dt;
   }
   for (const ClumpPoses::Clump &clump : hydro.poses().clumps())
@@ -70,21 +69,11 @@ Moves FixStokesDynamicsOverdamped::found(const Hydrodynamics &hydro) const
   return V;
 }
 
-Ride FixStokesDynamicsOverdamped::half_step(const BoxMotion &flow, bool carried) const
-{
-  const double half = 0.5 * update->dt;
-  const sd_box &box = steps.start().box;
-  return {half, carried, box, box, box_later(flow, box, half), flow};
-}
-
-/* In its box, by velocities of its middle */
+/* By velocities of its middle */
 void FixStokesDynamicsOverdamped::make_step(Hydrodynamics &hydro, const Moves &V)
 {
-  bring_box_to_this_step(lmp);
-  const Ride all = {update->dt, hydro.ambient.jumps() != nullptr, steps.start().box,
-                    middle.box, box_of(domain),                   hydro.ambient.box_motion()};
-  steps.go(hydro, all, middle.places, V, BodySteps::WHOLE);
-  for (int i : steps.start().who) load_on(i, load.give(i));
+  steps.whole(hydro, V);
+  for (int i : steps.start().who) drives.load(i, drives.before.give(i));
 }
 
 // --- without noise --------------------------------------------------------------------------------------------
@@ -99,25 +88,22 @@ void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Sol
 void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
 {
   const size_t width = hydro.rotation() ? 6 : 3;
-  const Ride half = half_step(hydro.ambient.box_motion(), hydro.ambient.jumps() != nullptr);
   Moves V = found(hydro);
-  dragged.assign(3 * (size_t) atom->nlocal + 3, 0.0);
+  drives.moved_with.assign(3 * (size_t) atom->nlocal + 3, 0.0);
   for (size_t i : steps.start().lone)
-    if (is_moved((int) i)) std::copy_n(&V.atoms[6 * i], 3, &dragged[3 * i]);
+    if (drives.is_moved((int) i)) std::copy_n(&V.atoms[6 * i], 3, &drives.moved_with[3 * i]);
   steps.back();
   hydro.look_ahead();
-  if (half.flow.deforms) put_box(domain, half.to);
-  steps.go(hydro, half, steps.start().x, V, BodySteps::PART);
+  steps.half(hydro, V);
   hydro.begin(Hydrodynamics::MIDDLE);
   hydro.ambient.half_a_step_back();
   hydro.velocities([this, &V, width](int i, const double *v, const double *) {
-    if (!is_moved(i)) std::copy_n(v, width, &V.atoms[6 * (size_t) i]);
+    if (!drives.is_moved(i)) std::copy_n(v, width, &V.atoms[6 * (size_t) i]);
   }, given());
   V.clumps.clear();
   for (const ClumpPoses::Clump &clump : hydro.poses().clumps())
     V.clumps.insert(V.clumps.end(), clump.V, clump.V + 6);
-  dragged.clear();
-  middle = {steps.places(hydro), half.to};
-  if (half.flow.deforms) put_box(domain, steps.start().box);
+  drives.moved_with.clear();
+  steps.middle(hydro);
   make_step(hydro, V);
 }

@@ -11,7 +11,6 @@
 
 #include "compute_stokes_dynamics_stress.h"
 
-#include "domain.h"
 #include "update.h"
 
 using namespace LAMMPS_NS;
@@ -21,12 +20,6 @@ void FixStokesDynamicsOverdamped::find_noisy_velocities(Hydrodynamics &hydro, co
 {
   const Given known = given();
   const Solve::Draw draw = noise.slip(hydro);
-  const BoxMotion flow = hydro.ambient.box_motion();
-  const bool carried = hydro.ambient.jumps();
-  const auto at = [&](const Ride &ride, const Moves &V, Hydrodynamics::Moment moment) {
-    steps.go(hydro, ride, steps.start().x, V, BodySteps::PART);
-    hydro.begin(moment);
-  };
   hydro.draw(known, draw);
   if (ComputeStokesDynamicsStress::wants_low(lmp)) {
     hydro.stress_of_noise(noise.tolerance_of_solve(), moments_of_noise);
@@ -37,18 +30,18 @@ void FixStokesDynamicsOverdamped::find_noisy_velocities(Hydrodynamics &hydro, co
   if (hydro.needs_differences()) {
     const Moves wander = hydro.wander(draw);
     for (double sign : {1.0, -1.0}) {
-      at({sign}, wander, Hydrodynamics::MIDDLE);
+      steps.aside(hydro, wander, sign);
+      hydro.begin(Hydrodynamics::MIDDLE);
       hydro.difference(known, sign);
     }
   }
-  const Ride half = half_step(flow, carried);
-  if (flow.deforms) put_box(domain, half.to);
-  at(half, of_films, Hydrodynamics::HALF_LATER);
+  steps.half(hydro, of_films);
+  hydro.begin(Hydrodynamics::HALF_LATER);
   hydro.films(known);
-  at(half, of_points, Hydrodynamics::HALF_LATER);
+  steps.half(hydro, of_points);
+  hydro.begin(Hydrodynamics::HALF_LATER);
   hydro.velocities(take, known, noise.tolerance_of_solve());
-  middle = {steps.places(hydro), half.to};
-  if (flow.deforms) put_box(domain, steps.start().box);
+  steps.middle(hydro);
   steps.back();
 }
 

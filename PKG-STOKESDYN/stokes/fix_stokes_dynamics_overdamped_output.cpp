@@ -43,7 +43,7 @@ double FixStokesDynamicsOverdamped::compute_vector(int k)
                                             [&] { return update->dt; },
                                             [&] { return (double) noise.report().products; },
                                             [&] { return noise.report().error; },
-                                            [&] { return spin.slip(); },
+                                            [&] { return drives.slip(); },
                                             [&] { return pressure_gradient(0); },
                                             [&] { return pressure_gradient(1); },
                                             [&] { return pressure_gradient(2); }};
@@ -143,7 +143,7 @@ double FixStokesDynamicsOverdamped::ideal_pressure() const
 {
   const ClumpPoses &poses = hydrodynamics().poses();
   double count = 0.0;
-  for (int i : poses.lone()) count += !steps.stays(i);
+  for (int i : poses.lone()) count += !drives.stays(i);
   for (const ClumpPoses::Clump &clump : poses.clumps()) count += clump.known == SD_BODY_FREE;
   return noise.on() ? count * noise.energy() : 0.0;
 }

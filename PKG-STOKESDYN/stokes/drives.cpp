@@ -1,0 +1,110 @@
+#include "drives.h"
+
+#include "copy.h"
+#include "fixes.h"
+#include "hydrodynamics.h"
+#include "ranks.h"
+
+#include "atom.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+void Drives::read(Keywords &in)
+{
+  if (in.is("held")) held.name = in.word();
+  if (in.is("pin")) pinned.name = in.word();
+  if (in.is("spin")) spin.read(in);
+  if (in.is("torque")) torques.read(in);
+  if (in.is("squirm")) squirmers.read(in);
+}
+
+void Drives::init(const Hydrodynamics &hydro, int groupbit)
+{
+  held.find(voice.of("keyword held"));
+  pinned.find(voice.of("keyword pin"));
+  moved_bits = 0;
+  for (const Fix *fix : fixes_of(lmp, "move"))
+    if (held.bit) moved_bits |= fix->groupbit;
+  directions.init(moves_any());
+  if (pinned.bit) refuse_pinned(hydro);
+  spin.init(hydro, held.bit | pinned.bit);
+  torques.init(hydro, groupbit, held.bit);
+  squirmers.init(hydro, groupbit);
+}
+
+void Drives::refuse_pinned(const Hydrodynamics &hydro) const
+{
+  const Voice keyword = voice.of("keyword pin");
+  if (const tagint both = first_atom(lmp, [this](int i) {
+        return is_held(i) && (atom->mask[i] & pinned.bit);
+      }))
+    keyword.fail("atom " + std::to_string(both) + " is in the group of keyword held as well: it must be in "
+                 "one of them only");
+  if (hydro.settings.rigid.apart())
+    keyword.fail("it is for spheres and clumps that feel each other: use clumps_only no of pair_style "
+                 "stokes_dynamics");
+}
+
+std::string Drives::holds() const
+{
+  return held.on() ? "keyword held" : pinned.on() ? "keyword pin" : spin.on() ? "keyword spin" : "";
+}
+
+void Drives::find(const Torques::Turned &turned)
+{
+  squirmers.find();
+  torques.find(directions, turned);
+}
+
+/* Those that fix move moves have the velocity that it gave them, others that are held have none. */
+sd_body_known Drives::known(int i, double *V) const
+{
+  std::fill_n(V, 6, 0.0);
+  if (atom->mask[i] & pinned.bit) return SD_BODY_PINNED;
+  if (!is_held(i)) return spin.turns(i, V + 3) ? SD_BODY_SPUN : SD_BODY_FREE;
+  if (!is_moved(i)) return SD_BODY_HELD;
+  std::copy_n(moved_with.empty() ? atom->v[i] : &moved_with[3 * (size_t) i], 3, V);
+  if (atom->omega_flag) std::copy_n(atom->omega[i], 3, V + 3);
+  return SD_BODY_HELD;
+}
+
+void Drives::load(int i, double *FT) const
+{
+  std::fill_n(FT, 6, 0.0);
+  copy<3>(atom->f[i], FT);
+  if (atom->torque_flag) copy<3>(atom->torque[i], FT + 3);
+  torques.add(i, FT + 3);
+}
+
+/* The same as it goes on, with the torque on those that slip */
+void Drives::push(int i, double change, double *FT) const
+{
+  load(i, FT);
+  for (int d = 0; d < 6 && change > 0.0 && before.has(i); d++) FT[d] += change * (FT[d] - before[i][d]);
+  if (spin.on()) spin.push(i, FT + 3);
+}
+
+Given Drives::given(double change) const
+{
+  Given all;
+  all.loads = [this, change](int i, double *FT) { push(i, change, FT); };
+  if (holds_any())
+    all.held = [this](int i, double *V) { return known(i, V); };
+  if (squirmers.on())
+    all.swims = [this](int i, sd_squirmer_stroke &stroke) { return squirmers.stroke(i, stroke); };
+  return all;
+}
+
+void Drives::look(int i, const double *W, const double *by_fluid, double change)
+{
+  if (!spin.on()) return;
+  double pushed[6];
+  push(i, change, pushed);
+  spin.look(i, W, by_fluid, pushed + 3);
+}
+
+}    // namespace StokesDyn
