@@ -71,10 +71,6 @@ void FlowInSlab::add_piece(const Voice &voice, Scene &scene, Piece &piece, std::
                              "all; is it in other units than the box?");
   std::vector<double> w(n, 1.0);
   halo.extend(lattice.h, piece.x, {&piece.a, &w});
-  struct Ranks {
-    Halo *halo;
-    Scene *scene;
-  } ranks = {&halo, &scene};
   sd_mobility_scene where = {};
   where.how.law = scene.law();
   where.how.width = 3;
@@ -82,20 +78,7 @@ void FlowInSlab::add_piece(const Voice &voice, Scene &scene, Piece &piece, std::
   where.n = n;
   where.n_all = (int) piece.a.size();
   where.spheres = {piece.x.data(), piece.a.data(), w.data()};
-  where.world = scene.ranks();
-  where.world.ctx = &ranks;
-  where.world.refresh = [](void *ctx, const double *rows, double *copies, int width) {
-    return callback([=] { static_cast<Ranks *>(ctx)->halo->refresh(rows, copies, width); });
-  };
-  where.world.reduce = nullptr;
-  where.world.sum = [](void *ctx, double *values, int count) {
-    return Scene::sum(static_cast<Ranks *>(ctx)->scene, values, count);
-  };
-  where.world.exchange = [](void *ctx, const double *send, const int *to, double *receive,
-                            const int *from) {
-    Scene *scene = static_cast<Ranks *>(ctx)->scene;
-    return scene->ranks().exchange(scene, send, to, receive, from);
-  };
+  where.world = halo.ranks();
   u.resize(3 * (size_t) n + 3);
   rows = std::max(rows, (double) where.n_all);
   sd_status status = sd_mobility_place(&omega, &sd_mobility_slab, &where);

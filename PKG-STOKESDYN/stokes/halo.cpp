@@ -1,5 +1,7 @@
 #include "halo.h"
 
+#include "callback.h"
+
 #include "domain.h"
 
 #include "sd_linear.h"
@@ -202,6 +204,30 @@ void Halo::extend(const double h[6], std::vector<double> &x,
     column->resize(all);
     refresh(column->data(), column->data() + n, 1);
   }
+}
+
+sd_world Halo::ranks() const
+{
+  sd_world all = {};
+  all.ctx = const_cast<Halo *>(this);
+  all.me = post.me;
+  all.ranks = post.ranks;
+  all.sum = [](void *ctx, double *values, int count) {
+    const MPI_Comm world = static_cast<Halo *>(ctx)->post.world;
+    MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_SUM, world);
+    return SD_OK;
+  };
+  all.refresh = [](void *ctx, const double *rows, double *copies, int width) {
+    return callback([=] { static_cast<Halo *>(ctx)->refresh(rows, copies, width); });
+  };
+  all.reduce = [](void *ctx, const double *copies, double *rows, int width) {
+    return callback([=] { static_cast<Halo *>(ctx)->reduce(copies, rows, width); });
+  };
+  all.exchange = [](void *ctx, const double *send, const int *to, double *receive, const int *from) {
+    const MPI_Comm world = static_cast<Halo *>(ctx)->post.world;
+    return callback([=] { exchange_numbers(world, send, to, receive, from); });
+  };
+  return all;
 }
 
 double Halo::memory_usage() const

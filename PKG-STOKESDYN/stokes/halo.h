@@ -11,6 +11,7 @@
 #include "ranks.h"
 
 #include "sd_lattice.h"
+#include "sd_world.h"
 
 #include <initializer_list>
 #include <vector>
@@ -57,6 +58,9 @@ class Halo {
   /* Behind the rows of x and the columns, those of the copies */
   void extend(const double h[6], std::vector<double> &x,
               std::initializer_list<std::vector<double> *> columns) const;
+
+  /* The other ranks as the core asks them, of these rows and copies; as long as this halo stands here */
+  sd_world ranks() const;
 
   /* The same for rows of which each sphere has as many as it likes, first [rows + copies + 1] where those of
    * each begin; for refresh and reduce alone */

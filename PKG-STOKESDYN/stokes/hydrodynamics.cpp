@@ -236,11 +236,8 @@ void Hydrodynamics::place()
   const bool first = looked.first_in(epochs.run);
   if (scene.view() == SD_VIEW_NEAR && first) warn_of_misfit(voice, ambient.misfit());
   if (first) check_stream_at_walls(voice, how.boundary, ambient, settings.lubrication.on);
-  if (settings.lubrication.on && !shells.settings.on() && first) {
-    double spheres = scene.size();
-    Scene::sum(&scene, &spheres, 1);
-    warn_of_shared_films(voice, spheres);
-  }
+  if (settings.lubrication.on && !shells.settings.on() && first)
+    warn_of_shared_films(voice, sum_of_all(world, (double) scene.size()));
   if (how.tensor == SD_TENSOR_OSEEN) refuse_close_oseen(voice, scene);
   if (first && how.clumps_only && std::isfinite(how.cutoff) && how.taper == SD_TAPER_NONE)
     warn_of_short_cutoff(voice, scene);

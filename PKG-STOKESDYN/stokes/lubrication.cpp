@@ -8,8 +8,6 @@
 #include "sd_multiblob_wall.h"
 #include "sd_wall_film.h"
 
-#include "comm.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -48,26 +46,6 @@ void Lubrication::provide(double largest, double smallest, bool halves)
     check(sd_films_create_by_radius(shells.one_body, functions.get(), &films));
   else if (shells.on())
     check(sd_films_create(shells.points, shells.one_body, functions.get(), &films));
-}
-
-/* What the core asks of other ranks, of these rows */
-sd_world Lubrication::ranks() const
-{
-  sd_world all = {};
-  all.ctx = const_cast<Lubrication *>(this);
-  all.me = comm->me;
-  all.ranks = comm->nprocs;
-  all.sum = [](void *ctx, double *values, int count) {
-    MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_SUM, static_cast<Lubrication *>(ctx)->world);
-    return SD_OK;
-  };
-  all.refresh = [](void *ctx, const double *rows, double *copies, int width) {
-    return callback([=] { static_cast<Lubrication *>(ctx)->halo.refresh(rows, copies, width); });
-  };
-  all.reduce = [](void *ctx, const double *copies, double *rows, int width) {
-    return callback([=] { static_cast<Lubrication *>(ctx)->halo.reduce(copies, rows, width); });
-  };
-  return all;
 }
 
 void Lubrication::surround(const Scene &where)
@@ -111,7 +89,7 @@ void Lubrication::place(Scene &where, const Ambient *fluid, bool noisy)
   scene.u = u.data();
   scene.drift = !fluid || drift.empty() ? nullptr : drift.data();
   scene.noisy = noisy;
-  scene.world = ranks();
+  scene.world = halo.ranks();
   check(sd_lubrication_place(&near, &scene));
   const Boundary &boundary = where.settings.boundary;
   for (int k = 0; k < boundary.walls; k++) add_wall(where, boundary.wall[k]);

@@ -61,7 +61,6 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   Halo halo;
   std::vector<double> x, a, w, drift;
 
-  sd_world ranks() const;
   void surround(const Scene &where);
   void add_wall(const Scene &where, const sd_wall &wall);
   void provide(double largest, double smallest, bool halves);

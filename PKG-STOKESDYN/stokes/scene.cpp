@@ -91,16 +91,6 @@ void Scene::drift(double *rows, int width, double sign) const
       sd_add_edges(signed_jumps, &whole.steps[3 * m], rows + width * (size_t) row_of[m]);
 }
 
-sd_status Scene::refresh(void *ctx, const double *rows, double *copies, int width)
-{
-  return callback([=] { static_cast<Scene *>(ctx)->halo.refresh(rows, copies, width); });
-}
-
-sd_status Scene::reduce(void *ctx, const double *copies, double *rows, int width)
-{
-  return callback([=] { static_cast<Scene *>(ctx)->halo.reduce(copies, rows, width); });
-}
-
 void Scene::surround(double reach, const std::string &keyword)
 {
   const Lattice lattice = Lattice::of(domain);
@@ -200,19 +190,7 @@ void Scene::place(int n_all_or_copies)
   scene.n_all = n_all_or_copies;
   scene.spheres = cloud ? this->cloud() : local();
   scene.pairs = view() == SD_VIEW_LIST ? &list() : nullptr;
-  scene.world = ranks();
-  scene.world.spread = [](void *ctx, const double *rows, double *all, int width) {
-    return callback([=] {
-      Scene *self = static_cast<Scene *>(ctx);
-      self->to_cloud(rows, all, width, self->first_in_cloud());
-    });
-  };
-  scene.world.collect = [](void *ctx, const double *all, double *rows, int width) {
-    return callback([=] {
-      Scene *self = static_cast<Scene *>(ctx);
-      self->from_cloud(all, rows, width, self->first_in_cloud());
-    });
-  };
+  scene.world = cloud ? ranks_of_cloud() : ranks();
   if (shells) place_points(n_all_or_copies, scene);
   if (scene.n_all < FLOATS_FROM) scene.how.tolerance = 0.0;
   const sd_status status = sd_mobility_place(&omega, engine, &scene);
@@ -238,9 +216,25 @@ void Scene::place_points(int n_all_or_copies, sd_mobility_scene &scene)
   scene.groups = shells->groups();
   if (view() == SD_VIEW_ALL) return;
   halo_of_points = halo.refined(shells->first_of_all());
-  scene.world.refresh = [](void *ctx, const double *rows, double *copies, int width) {
-    return callback([=] { static_cast<Scene *>(ctx)->halo_of_points.refresh(rows, copies, width); });
+  scene.world = halo_of_points.ranks();
+}
+
+/* They know each other's rows by the cloud. */
+sd_world Scene::ranks_of_cloud()
+{
+  sd_world all = {};
+  all.ctx = this;
+  all.me = comm->me;
+  all.ranks = comm->nprocs;
+  all.spread = [](void *ctx, const double *rows, double *cloud_rows, int width) {
+    Scene *scene = static_cast<Scene *>(ctx);
+    return callback([=] { scene->to_cloud(rows, cloud_rows, width, scene->first_in_cloud()); });
   };
+  all.collect = [](void *ctx, const double *cloud_rows, double *rows, int width) {
+    Scene *scene = static_cast<Scene *>(ctx);
+    return callback([=] { scene->from_cloud(cloud_rows, rows, width, scene->first_in_cloud()); });
+  };
+  return all;
 }
 
 /* The cloud: the spheres of all ranks, sorted by tag. */
@@ -311,29 +305,6 @@ void Scene::from_cloud(const double *cloud_rows, double *own_rows, int width, co
   }
   if (comm->nprocs == 1) return;
   MPI_Reduce_scatter(in_order_of_rank.data(), own_rows, counts.data(), MPI_DOUBLE, MPI_SUM, world);
-}
-
-sd_world Scene::ranks()
-{
-  sd_world all = {};
-  all.ctx = this;
-  all.me = comm->me;
-  all.ranks = comm->nprocs;
-  all.sum = sum;
-  all.refresh = refresh;
-  all.reduce = reduce;
-  all.exchange = [](void *ctx, const double *send, const int *to, double *receive, const int *from) {
-    return callback([=] {
-      exchange_numbers(static_cast<Scene *>(ctx)->world, send, to, receive, from);
-    });
-  };
-  return all;
-}
-
-sd_status Scene::sum(void *ctx, double *values, int count)
-{
-  MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_SUM, static_cast<Scene *>(ctx)->world);
-  return SD_OK;
 }
 
 double Scene::memory_usage() const

@@ -150,11 +150,6 @@ class Scene : protected LAMMPS_NS::Pointers {
   sd_spheres local() const { return {x.data(), a.data(), w.data()}; }
   double largest() const { return most; }
   double smallest() const { return least; }
-  /* rows [width size()] -> those of the copies */
-  static sd_status refresh(void *ctx, const double *rows, double *copies, int width);
-  /* and back: rows += those of their copies */
-  static sd_status reduce(void *ctx, const double *copies, double *rows, int width);
-
   // --- who sees whom, since the last update()
 
   const sd_pairs &list() const { return has_cutoff() ? pairs.pairs : candidates.pairs; }
@@ -198,9 +193,8 @@ class Scene : protected LAMMPS_NS::Pointers {
 
   /* u = Omega F since the last update(): context of sd_mobility_apply. */
   sd_mobility *mobility() { return &omega; }
-  /* What the core may ask of the other ranks; refresh and reduce are of the rows of spheres */
-  sd_world ranks();
-  static sd_status sum(void *ctx, double *values, int count);
+  /* What the core may ask of the other ranks: of the rows of spheres */
+  sd_world ranks() const { return halo.ranks(); }
 
   double memory_usage() const;
 
@@ -266,6 +260,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   void gather();
   void place(int n_all_or_copies);
   void place_points(int n_all_or_copies, sd_mobility_scene &scene);
+  sd_world ranks_of_cloud();
   /* Of each sphere width numbers, or so many for each of its rows, first [n_all + 1] */
   void to_cloud(const double *own_rows, double *cloud_rows, int width, const int *first);
   void from_cloud(const double *cloud_rows, double *own_rows, int width, const int *first);

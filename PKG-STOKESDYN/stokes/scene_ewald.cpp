@@ -97,11 +97,7 @@ bool Scene::split()
 {
   if (settings.far_field == Settings::DIRECT) return false;
   const bool must = periodic() || settings.far_field == Settings::EWALD;
-  double points_of_all = points_here();
-  if (!must) {
-    sum(this, &points_of_all, 1);
-    if (points_of_all <= SD_EWALD_FEWEST) return false;
-  }
+  if (!must && sum_of_all(world, points_here()) <= SD_EWALD_FEWEST) return false;
   sd_ewald_box box = ewald.box;
   const sd_ewald_sizes sizes = measure(box);
   ewald.count = sizes.all.count;
