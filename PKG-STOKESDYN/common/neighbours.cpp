@@ -52,71 +52,34 @@ bool fits(const std::string &styles, const std::string &style)
 
 // --- who is there --------------------------------------------------------------------------------
 
-static std::vector<Guest> fixes(LAMMPS *lmp)
-{
-  std::vector<Guest> guests;
-  for (int i = 0; i < lmp->modify->nfix; i++) {
-    Fix *fix = lmp->modify->fix[i];
-    guests.push_back({lmp, fix->style, name_of(fix)});
-    guests.back().fix = fix;
-  }
-  return guests;
-}
-
-static std::vector<Guest> computes(LAMMPS *lmp)
-{
-  std::vector<Guest> guests;
-  for (int i = 0; i < lmp->modify->ncompute; i++) {
-    Compute *compute = lmp->modify->compute[i];
-    guests.push_back({lmp, compute->style,
-                      "compute " + std::string(compute->id) + " of style " + compute->style});
-    guests.back().compute = compute;
-  }
-  return guests;
-}
-
-/* The style itself, then those below a hybrid */
-static std::vector<Guest> pairs(LAMMPS *lmp)
-{
-  std::vector<Guest> guests;
-  for (const auto &each : Compat::pair_styles(lmp->force)) {
-    guests.push_back({lmp, each.first, "pair_style " + each.first});
-    guests.back().pair = each.second;
-  }
-  return guests;
-}
-
-static std::vector<Guest> bonds(LAMMPS *lmp)
-{
-  std::vector<Guest> guests;
-  for (const auto &each : Compat::bond_styles(lmp->force)) {
-    guests.push_back({lmp, each.first, "bond_style " + each.first});
-    guests.back().bond = each.second;
-  }
-  return guests;
-}
-
-static std::vector<Guest> atom_styles(LAMMPS *lmp, const std::string &styles)
-{
-  std::vector<Guest> guests;
-  for (const std::string &style : words_of(styles))
-    if (lmp->atom->style_match(style.c_str()))
-      guests.push_back({lmp, style, "atom_style " + style});
-  return guests;
-}
-
+/* Those of the kind that the row names; of pair and bond styles a hybrid itself, then those below it */
 static std::vector<Guest> guests_of(LAMMPS *lmp, const Neighbour &row)
 {
-  std::vector<Guest> all, found;
-  switch (row.kind) {
-    case Neighbour::FIX: all = fixes(lmp); break;
-    case Neighbour::PAIR: all = pairs(lmp); break;
-    case Neighbour::BOND: all = bonds(lmp); break;
-    case Neighbour::COMPUTE: all = computes(lmp); break;
-    case Neighbour::ATOM: return atom_styles(lmp, row.styles);
+  std::vector<Guest> found;
+  const auto add = [&](const std::string &style, const std::string &name, const auto &put) {
+    if (!fits(row.styles, style)) return;
+    found.push_back({lmp, style, name});
+    put(found.back());
+  };
+  const Modify *modify = lmp->modify;
+  for (int i = 0; i < modify->nfix && row.kind == Neighbour::FIX; i++) {
+    Fix *fix = modify->fix[i];
+    add(fix->style, name_of(fix), [=](Guest &guest) { guest.fix = fix; });
   }
-  for (const Guest &guest : all)
-    if (fits(row.styles, guest.style)) found.push_back(guest);
+  for (int i = 0; i < modify->ncompute && row.kind == Neighbour::COMPUTE; i++) {
+    Compute *compute = modify->compute[i];
+    add(compute->style, "compute " + std::string(compute->id) + " of style " + compute->style,
+        [=](Guest &guest) { guest.compute = compute; });
+  }
+  if (row.kind == Neighbour::PAIR)
+    for (const auto &each : Compat::pair_styles(lmp->force))
+      add(each.first, "pair_style " + each.first, [&](Guest &guest) { guest.pair = each.second; });
+  if (row.kind == Neighbour::BOND)
+    for (const auto &each : Compat::bond_styles(lmp->force))
+      add(each.first, "bond_style " + each.first, [&](Guest &guest) { guest.bond = each.second; });
+  if (row.kind == Neighbour::ATOM)
+    for (const std::string &style : words_of(row.styles))
+      if (lmp->atom->style_match(style.c_str())) add(style, "atom_style " + style, [](Guest &) {});
   return found;
 }
 
