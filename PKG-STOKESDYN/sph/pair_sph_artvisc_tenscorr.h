@@ -250,6 +250,7 @@ class PairSph : public LAMMPS_NS::Pair {
   std::vector<double> shear_rates();
   void find_viscosities();
   void look_at_friction();
+  void look_at_surface(int found);
   void forces(bool rates);
   double sum_forces(const sd_sph_model &of, Neighbours &both, const sd_sph_list &half, bool rates, Rows &F,
                     double *of_pairs);

@@ -165,6 +165,16 @@ void PairSph::look_at_fluids()
              "sph/density/continuity");
 }
 
+/* At a surface that should not be there shift moves particles out of the fluid. found: one of this rank that is
+ * at a surface, -1: none. */
+void PairSph::look_at_surface(int found)
+{
+  const tagint at_surface = smallest_of_all(world, found < 0 ? MAXTAGINT : atom->tag[found]);
+  if (at_surface < MAXTAGINT)
+    voice.warn("P0 of fix sph/pressure is " + text(background()) + ", which says with shift that the fluid fills its "
+               "vessel, but atom " + std::to_string(at_surface) + " is at a free surface: use P0 = 0");
+}
+
 /* Wall particles stand for fluid: they push with its mass. */
 void PairSph::look_at_walls()
 {

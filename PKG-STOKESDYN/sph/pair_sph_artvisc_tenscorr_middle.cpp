@@ -131,7 +131,9 @@ void PairSph::close_sums()
   const sd_sph_closing closing = {atom->nlocal, sums.data(),  atom->mask,  own_vest_bits, full,
                                   least,        whole,       rate.data(), order.data(), kick.data()};
   const int stops = sd_sph_close(&model, &particles, &closing);
-  if (stops >= 0)
+  if (full && !corrects) {
+    if (update->setupflag) look_at_surface(stops);
+  } else if (stops >= 0)
     voice.at_step().fail_one("keyword correction: atom " + std::to_string(atom->tag[stops]) +
                              " is at a free surface: the smallest eigenvalue of the matrix of its neighbours "
                              "is below " +

@@ -130,6 +130,7 @@ int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_
     /* what is corrected, and where its surface is, goes by all fluids */
     const sd_sph_symmetric whole = level == SD_SPH_MIXTURE ? moment(model->dimension, sums + 24) : M;
     const int inside = flows && sd_sph_above(&whole, SURFACE);
+    if (c->full && flows && stops < 0 && !sd_sph_above(&whole, c->least)) stops = i;
     du[3] = c->whole > 0.0 && inside && sd_sph_above(&whole, c->whole);
     if (inside || (flows && c->full))
       order_shift(model->dimension, sums, sd_sph_of_pair(model, p, i, i)->support, du);
@@ -142,7 +143,6 @@ int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_
       make_pliant(sums, &B, inside, row, &c->rate[i]);
     else if (level >= SD_SPH_VELOCITY) {
       if (!flows) continue;
-      if (!sd_sph_above(&whole, c->least) && stops < 0) stops = i;
       const sd_sph_symmetric all = level == SD_SPH_MIXTURE ? inverse(&whole) : B;
       memcpy(row + 8, all.a, sizeof(all.a));
       c->rate[i] = -row[3] * order_carry(sums + 14, &all, du, c->kick + 3 * (size_t) i);

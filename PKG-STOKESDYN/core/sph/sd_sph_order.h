@@ -22,7 +22,7 @@ typedef struct {
   /* There is no free surface, as always with correction: who flows is shifted, however few its neighbours
    * are. Otherwise a gap that the flow draws inside the fluid stays for ever. */
   int full;
-  /* correction stops where the smallest eigenvalue of M is below */
+  /* with `full`: whose smallest eigenvalue of M is below this is at a surface all the same */
   double least;
   /* with shift: column 7 of order is 1 where a particle flows and the smallest eigenvalue of M is above this;
    * 0: not asked for */
@@ -41,7 +41,8 @@ typedef struct {
  *         0 for walls and, unless `full`, where an eigenvalue of M is below 0.9: at a free surface and,
  *         since M is that of one fluid, at an interface. Where it is below 0.9 B of pliant is the unit
  *         matrix: M says more of the cut than of the arrangement
- * Returns the first particle where correction stops, -1: there is none. */
+ * Returns the first particle that flows and is at a surface although there should be none (`full`), -1:
+ * there is none. */
 int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_closing *c);
 
 SD_END_C

@@ -122,6 +122,14 @@ def test_walls_of_another_mass_than_the_fluid_are_warned_of(tmp_path, ratio, war
     assert ("and the mass of the fluid particles in front of it differ by more than 10 %" in log) == warned
 
 
+@pytest.mark.parametrize("scheme, P0, warned", [("shift yes", 0, False), ("shift yes", 2, True), ("shift pliant", 2, True), ("", 2, False)])
+def test_a_surface_under_a_background_pressure_is_warned_of(tmp_path, scheme, P0, warned):
+    """P0 > 0 says that shift need not end at a surface."""
+    log = log_of(tmp_path, "variable ratio index 1\n" + FLOOR.replace("central", "central " + scheme) + f"fix p all sph/pressure Tait 14.2857 1 7 {P0}" +
+                 REST.format(volume="no"))
+    assert ("fills its vessel, but atom" in log) == warned
+
+
 def test_a_wall_takes_the_pressure_of_another_fluid_where_its_own_is_not():
     """volume yes, and the floor in the group of a second fix sph/pressure: it bears the water as the floor of the water's own fix does. In a
     tank that sloshes, fluids come to stand before the walls of each other."""
