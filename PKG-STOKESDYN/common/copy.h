@@ -1,5 +1,6 @@
 /* N numbers from one place to another that it does not touch, in a few instructions. std::copy_n must allow
- * for places that overlap and calls the library, which in a loop over short rows costs more than all else. */
+ * for places that overlap and calls the library, which in a loop over short rows costs more than all else.
+ * And where a row is. */
 #ifndef SD_COPY_H
 #define SD_COPY_H
 
@@ -11,6 +12,13 @@ namespace StokesDyn {
 template <size_t N> inline void copy(const double *from, double *to)
 {
   memcpy(to, from, N * sizeof(double));
+}
+
+/* Row i of one of LAMMPS's arrays of three numbers, whose rows stand one after the other (Memory::create),
+ * without a look at its pointer: loops over all atoms wait for memory. */
+inline double *atom_row(double **rows, int i)
+{
+  return rows[0] + 3 * (size_t) i;
 }
 
 }    // namespace StokesDyn

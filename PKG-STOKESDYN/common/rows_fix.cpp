@@ -71,12 +71,6 @@ double AtomRows::bytes() const
       sizeof(double) * (double) blocks.size() * width * ROWS_OF_A_BLOCK;
 }
 
-double *AtomArray::give(int i)
-{
-  written[i] = 1;
-  return rows[i];
-}
-
 void AtomArray::take(int i)
 {
   if (written[i]) std::fill_n(rows[i], width, 0.0);

@@ -76,8 +76,12 @@ class AtomArray final : public RowsOfAtoms {
   /* array[i][column]; it moves when grow() is called */
   double **array() { return rows.data(); }
   bool has(int i) const override { return written[i]; }
-  const double *operator[](int i) const override { return rows[i]; }
-  double *give(int i) override;
+  const double *operator[](int i) const override { return &block[(size_t) width * i]; }
+  double *give(int i) override
+  {
+    written[i] = 1;
+    return &block[(size_t) width * i];
+  }
   void take(int i) override;
   void grow(int nmax) override;
   double bytes() const override { return (double) rows.capacity() * (sizeof(double) * width + 9); }

@@ -1,5 +1,6 @@
 #include "ambient.h"
 
+#include "copy.h"
 #include "keywords.h"
 #include "lammps_compat.h"
 #include "ranks.h"
@@ -298,7 +299,7 @@ bool Ambient::far_out(int i) const
 int Ambient::fault(int i) const
 {
   // 0 times a number is 0 unless it is infinite or not a number: nearly always this one test is enough.
-  const double *x = atom->x[i], *v = atom->v[i], *fluid = velocity(i), a = atom->radius[i];
+  const double *x = atom_row(atom->x, i), *v = atom_row(atom->v, i), *fluid = velocity(i), a = atom->radius[i];
   double sum = x[0] + x[1] + x[2] + a + v[0] + v[1] + v[2] + viscosity(i) + fluid[0] + fluid[1] +
       fluid[2];
   if (spins) sum += atom->omega[i][0] + atom->omega[i][1] + atom->omega[i][2];

@@ -52,9 +52,14 @@ void BodySteps::step_clump(const ClumpPoses &poses, const Clumps &from, size_t c
   sd_turn_quaternion(row + TURN, row + TURNED);
   for (int k = 0; k < body.n; k++) {
     const size_t m = poses.member_of(clump, k);
-    sd_minus(&x[3 * (size_t) k], &from.x[3 * m], row + STEP);
-    sd_add_edges(box, &from.steps[3 * m], row + STEP);
-    give(m, row);
+    double *there = &x[3 * (size_t) k];
+    sd_minus(there, &from.x[3 * m], there);
+    sd_add_edges(box, &from.steps[3 * m], there);
+  }
+  // Not at once: a processor waits when it reads in pairs what it has just written one by one.
+  for (int k = 0; k < body.n; k++) {
+    copy<3>(&x[3 * (size_t) k], row + STEP);
+    give(poses.member_of(clump, k), row);
   }
 }
 
@@ -70,7 +75,8 @@ void BodySteps::step_clumps(Hydrodynamics &hydro, const Clumps &from, const Step
         step_clump(hydro.poses(), from, c, step(c), box, x, give);
   };
   hydro.scene.whole.scatter(COLUMNS, all, [&](int i, const double *row) {
-    for (int d = 0; d < domain->dimension; d++) atom->x[i][d] += row[STEP + d];
+    double *x_of = atom_row(atom->x, i);
+    for (int d = 0; d < domain->dimension; d++) x_of[d] += row[STEP + d];
     directions.turn(i, row + TURN);
     if (extent == PART) return;
     note(i, row + STEP);

@@ -21,14 +21,15 @@ ClumpPoses::ClumpPoses(LAMMPS *lmp, Scene &scene, const Ambient &ambient, RigidC
 }
 
 /* What clumps must know of their spheres; velocities are those of the images side by side. */
-void ClumpPoses::gather()
+template <int WIDTH> void ClumpPoses::gather(const std::vector<RigidClumps::Body> &all)
 {
-  enum { ETA, RADIUS, MOTION, TURNING = MOTION + 3, FLOW = TURNING + 3, GRADIENT = FLOW + 3 };
   const double *gradients = ambient.gradients(), *jumps = ambient.jumps();
   const bool moving = given.velocities, turns = scene.settings.rotation;
-  const size_t n = rigid.members().size(), flows = gradients ? 3 * n : 0;
+  const size_t n = rigid.members().size(), flows = WIDTH == COLUMNS ? 3 * n : 0;
   for (auto *numbers : {&spheres.eta, &spheres.radius}) numbers->resize(n + 1);
-  for (auto *vectors : {&spheres.x, &spheres.motion, &spheres.turning}) vectors->resize(3 * n + 3);
+  spheres.x.resize(3 * n + 3);
+  for (auto *vectors : {&spheres.motion, &spheres.turning}) vectors->resize(moving ? 3 * n + 3 : 0);
+  loads.assign(moving ? 0 : 6 * all.size(), 0.0);
   spheres.flow.resize(flows);
   spheres.gradient.resize(3 * flows);
   const auto row = [&](int i, double *out) {
@@ -40,28 +41,36 @@ void ClumpPoses::gather()
       copy<3>(atom->v[i], out + MOTION);
       if (turns) copy<3>(atom->omega[i], out + TURNING);
     }
-    if (!gradients) return;
+    if (WIDTH < COLUMNS) return;
     copy<3>(ambient.velocity(i), out + FLOW);
     copy<9>(gradients + 9 * (size_t) i, out + GRADIENT);
+  };
+  size_t b = 0;    // whose member m is: bodies are in the order of their members
+  const auto add_load = [&](const double *x, const double *FT) {
+    double arm[3];
+    sd_minus(x, &scene.whole.x[3 * (size_t) rigid.members()[all[b].begin]], arm);
+    sd_clump_add_load(arm, FT, &loads[6 * b]);
   };
   const auto take = [&](size_t m, const double *of) {
     const int k = rigid.places()[m], *steps = &scene.whole.steps[3 * m];
     if (k < 0) return;
+    while (k >= all[b].begin + all[b].n) b++;
     spheres.eta[k] = of[ETA];
     spheres.radius[k] = of[RADIUS];
     copy<3>(&scene.whole.x[3 * m], &spheres.x[3 * (size_t) k]);
-    copy<3>(of + MOTION, &spheres.motion[3 * (size_t) k]);
-    copy<3>(of + TURNING, &spheres.turning[3 * (size_t) k]);
-    if (jumps && moving) sd_add_edges(jumps, steps, &spheres.motion[3 * (size_t) k]);
-    if (!gradients) return;
+    if (!moving)
+      add_load(&scene.whole.x[3 * m], of + MOTION);
+    else {
+      copy<3>(of + MOTION, &spheres.motion[3 * (size_t) k]);
+      copy<3>(of + TURNING, &spheres.turning[3 * (size_t) k]);
+      if (jumps) sd_add_edges(jumps, steps, &spheres.motion[3 * (size_t) k]);
+    }
+    if (WIDTH < COLUMNS) return;
     copy<3>(of + FLOW, &spheres.flow[3 * (size_t) k]);
     copy<9>(of + GRADIENT, &spheres.gradient[9 * (size_t) k]);
     if (jumps) sd_add_edges(jumps, steps, &spheres.flow[3 * (size_t) k]);
   };
-  if (gradients)
-    scene.whole.gather<GRADIENT + 9>(row, take);
-  else
-    scene.whole.gather<FLOW>(row, take);
+  scene.whole.gather<WIDTH>(row, take);
 }
 
 void ClumpPoses::find()
@@ -71,7 +80,7 @@ void ClumpPoses::find()
   find_lone();
   if (!rigid.settings.on) return;
   const auto &all = rigid.find();
-  gather();
+  ambient.gradients() ? gather<COLUMNS>(all) : gather<FLOW>(all);
   int64_t split = RigidClumps::NOBODY;
   std::vector<int64_t> bent;
   for (size_t b = 0; b < all.size(); b++) {
@@ -155,8 +164,8 @@ sd_clump_motion ClumpPoses::look_at(const Clump &clump) const
   const size_t at = 3 * (size_t) body(clump).begin;
   sd_clump_motion m = {};
   m.x = &spheres.x[at];
-  m.v = &spheres.motion[at];
-  m.omega = spins && shape(clump).shape.rank < 2 ? &spheres.turning[at] : nullptr;
+  m.v = given.velocities ? &spheres.motion[at] : nullptr;
+  m.omega = given.velocities && spins && shape(clump).shape.rank < 2 ? &spheres.turning[at] : nullptr;
   std::copy_n(ambient.uniform_velocity(), 3, m.u_uniform);
   m.u = strains ? &spheres.flow[at] : nullptr;
   m.gradient = strains ? &spheres.gradient[3 * at] : nullptr;
@@ -179,25 +188,28 @@ void ClumpPoses::velocities(int width, const Take &take)
   }
   if (!rigid.settings.on) return;
   std::vector<double> v, force, torque;
-  double back[6] = {0.0}, row[12];
+  double back[6] = {0.0}, row[12] = {0.0};
   for (int d = 0; d < 6 && ambient.jumps(); d++) back[d] = -ambient.jumps()[d];
   const auto all = [&](const auto &give) {
     for (Clump &clump : all_clumps) {
       const ClumpShape &is = shape(clump);
       const size_t n = body(clump).n, at = 3 * (size_t) body(clump).begin;
       const sd_clump_motion motion = look_at(clump);
+      double arm[3], on_clump[6] = {0.0};
+      sd_minus(&spheres.x[at], clump.pose + 9, arm);
+      sd_clump_add_load(arm, &loads[6 * (size_t) clump.number], on_clump);
       v.resize(6 * n);
       force.resize(3 * n);
-      torque.resize(3 * n);
-      sd_clump_settle(&is.shape, &is.clump, &motion, clump.pose, clump.eta, &spheres.motion[at],
-                      &spheres.turning[at], clump.known == SD_BODY_HELD, clump.V, v.data(), force.data(),
-                      torque.data());
+      torque.resize(width == 6 ? 3 * n : 0);
+      sd_clump_settle(&is.shape, &is.clump, &motion, clump.pose, clump.eta, on_clump,
+                      clump.known == SD_BODY_HELD, clump.V, v.data(), force.data(),
+                      width == 6 ? torque.data() : nullptr);
       for (size_t k = 0; k < n; k++) {
         const size_t m = member_of(clump, (int) k);
         copy<6>(&v[6 * k], row);
         copy<3>(&force[3 * k], row + 6);
-        copy<3>(&torque[3 * k], row + 9);
-        sd_add_edges(back, &scene.whole.steps[3 * m], row);
+        if (width == 6) copy<3>(&torque[3 * k], row + 9);
+        if (ambient.jumps()) sd_add_edges(back, &scene.whole.steps[3 * m], row);
         give(m, row);
       }
     }

@@ -117,13 +117,18 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
   const std::vector<int> nobody_lone;
 
   /* of the spheres of one clump after the other, in the order of its shape: eta (0: takes no part),
-   * radius, place, force and torque or velocity and angular velocity, fluid velocity and its
-   * gradient (empty: uniform) */
+   * radius, place, velocity and angular velocity (empty: not given), fluid velocity and its gradient
+   * (empty: uniform) */
   struct {
     std::vector<double> eta, radius, x, motion, turning, flow, gradient;
   } spheres;
+  /* [6] of each body, where loads are given: about its sphere 0 */
+  std::vector<double> loads;
 
-  void gather();
+  /* columns of a row from an atom; the last two kinds where the fluid is not uniform */
+  enum { ETA, RADIUS, MOTION, TURNING = MOTION + 3, FLOW = TURNING + 3, GRADIENT = FLOW + 3,
+         COLUMNS = GRADIENT + 9 };
+  template <int WIDTH> void gather(const std::vector<RigidClumps::Body> &all);
   void find_lone();
   void find_held();
 };

@@ -75,8 +75,8 @@ sd_body_known Drives::known(int i, double *V) const
 void Drives::load(int i, double *FT) const
 {
   std::fill_n(FT, 6, 0.0);
-  copy<3>(atom->f[i], FT);
-  if (atom->torque_flag) copy<3>(atom->torque[i], FT + 3);
+  copy<3>(atom_row(atom->f, i), FT);
+  if (atom->torque_flag) copy<3>(atom_row(atom->torque, i), FT + 3);
   torques.add(i, FT + 3);
 }
 

@@ -92,9 +92,23 @@ void FixStokesDynamicsOverdamped::init()
   if (scheme == MIDPOINT) refuse_midpoint(hydro);
 }
 
+/* A sphere that has been in no clump until now has not turned with one. */
+void FixStokesDynamicsOverdamped::begin_turns(const Hydrodynamics &hydro)
+{
+  if (!turns_begun.first_in(hydro.epochs.lists)) return;
+  for (int i : hydro.ambient.who()) {
+    double *q = output.give(i) + TURNED;
+    if (!in_clump(hydro, i))
+      std::fill_n(q, 4, 0.0);
+    else if (q[0] == 0.0 && sd_dot(q + 1, q + 1) == 0.0)
+      q[0] = 1.0;
+  }
+}
+
 /* What torques and strokes are in this step */
 void FixStokesDynamicsOverdamped::find_drives(const Hydrodynamics &hydro)
 {
+  begin_turns(hydro);
   drives.find([&](int i) {
     return in_clump(hydro, i) ? output[i] + TURNED : (const double *) nullptr;
   });
@@ -201,28 +215,23 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
   check_selection(hydro);
   check_images(voice, hydro.ambient.jumps());
   check_strain(voice, hydro.ambient.box_motion());
-  double causes[CAUSES];
-  find_causes(hydro, causes);
-  forget_before_change(causes);
-  std::copy_n(causes, (int) CAUSES, last.causes);
+  forget_before_change(hydro);
+  causes_due = true;
+  if (has_noise_in_solve()) note_causes(hydro);    // which reads another fluid
   last.atoms = atom->natoms;
   const size_t width = hydro.rotation() ? 6 : 3, turns = steps.turns() ? width : 3;
   const Solve::Take take = [&, width](int i, const double *v, const double *F) {
     const double *fluid = hydro.ambient.velocity(i);
-    double *row = output.give(i), V[6];
-    width == 6 ? copy<6>(v, V) : copy<3>(v, V);
+    double *row = output.give(i), *moves = atom_row(atom->v, i), V[6];
+    for (size_t d = 0; d < width; d++) V[d] = v[d];
     steps.keep_in_plane(V, width);
     for (size_t d = 0; d < 3; d++) {
-      atom->v[i][d] = V[d];
+      moves[d] = V[d];
       row[d] = V[d] - fluid[d];
       row[3 + d] = F[d];
       row[6 + d] = width == 6 ? F[3 + d] : 0.0;
       if (width == 6) atom->omega[i][d] = V[3 + d];
     }
-    if (!in_clump(hydro, i))
-      std::fill_n(row + TURNED, 4, 0.0);
-    else if (row[TURNED] == 0.0 && sd_dot(row + TURNED + 1, row + TURNED + 1) == 0.0)
-      row[TURNED] = 1.0;
     if (!in_clump(hydro, i)) copy<3>(V, motion.give(i));
     if (width == 3) return;
     steps.look(i, V + 3);

@@ -37,6 +37,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void post_integrate() override;
   void final_integrate() override;
   void end_of_step() override;
+  void post_run() override;
 
   /* For compute stokes_dynamics/stress: does the last solve have noise, and what did the same noise alone
    * make where the step begins, as Hydrodynamics::stress? nullptr: nobody asked for it in time */
@@ -82,9 +83,12 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   struct {
     double step = -1, dt = 0.0, next_dt = 0.0, atoms = 0.0;
     /* fingerprints of what velocities follow from: forces, torques, the fluid, viscosities, given
-     * velocities and strokes, who is held, pinned or spun (sd_hash_add_row) */
+     * velocities and strokes, who is held, pinned or spun (sd_hash_add_row). All but the last are found
+     * when somebody may ask for them: a run ends, or a restart file is written */
     double causes[CAUSES] = {0.0};
   } last;
+  bool causes_due = false;
+  Since turns_begun;
   bool from_file = false;
 
   /* change_of_velocities() in the last step, of this rank */
@@ -97,13 +101,16 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   double pressure_gradient(int d) const;
   bool restored() const override { return last.step >= 0; }
   std::vector<SavedNumbers> saved() override;
+  void write_state(NamedState &) override;
   void read_state(const NamedState &) override { from_file = true; }
   const HydrodynamicsOf hydrodynamics{
       voice, "there is no pair_style stokes_dynamics with the settings of the fluid"};
   bool goes_on(const Hydrodynamics &) const;
   void find_causes(const Hydrodynamics &, double *causes) const;
   bool causes_stand(const Hydrodynamics &) const;
-  void forget_before_change(const double *causes);
+  void note_causes(const Hydrodynamics &);
+  void find_kinds(const Hydrodynamics &, double *kinds) const;
+  void forget_before_change(const Hydrodynamics &);
   void set_step(double dt);
   void set_up();
   void announce();
@@ -113,6 +120,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void check_selection(const Hydrodynamics &) const;
   Neighbourhood neighbourhood;
   void look_at_neighbours();
+  void begin_turns(const Hydrodynamics &);
   void find_drives(const Hydrodynamics &);
   bool in_clump(const Hydrodynamics &, int i) const;
   double weight(bool has) const;

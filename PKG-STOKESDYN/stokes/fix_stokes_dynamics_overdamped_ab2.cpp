@@ -24,7 +24,7 @@ void FixStokesDynamicsOverdamped::at_image(const Hydrodynamics &hydro, const dou
   double shift[3], jump[3];
   for (int d = 0; d < 3; d++) shift[d] = place[d] - row[6 + d];
   sd_multiply3(hydro.ambient.box_motion().gradient, shift, jump);
-  std::copy_n(row, 6, old);
+  copy<6>(row, old);
   for (int d = 0; d < 3; d++) old[d] += jump[d];
 }
 
@@ -58,7 +58,7 @@ void FixStokesDynamicsOverdamped::tracked_velocity(const ClumpPoses::Clump &clum
   double arm[3], turning[3];
   sd_multiply3(clump.pose, tracked(shape), arm);
   sd_cross(clump.V + 3, arm, turning);
-  std::copy_n(clump.V, 6, V);
+  copy<6>(clump.V, V);
   for (int d = 0; d < 3; d++) V[d] += turning[d];
 }
 

@@ -27,7 +27,7 @@ bool FixStokesDynamicsOverdamped::goes_on(const Hydrodynamics &hydro) const
 void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double *causes) const
 {
   const int width = hydro.rotation() ? 6 : 3;
-  double sums[CAUSES] = {0.0}, fluid[6], of_box[3], given[6], pushed[6];
+  double sums[KINDS] = {0.0}, fluid[6], of_box[3], given[6], pushed[6];
   sd_squirmer_stroke stroke;
   for (int i : hydro.ambient.who()) {
     const uint64_t tag = atom->tag[i];
@@ -43,15 +43,37 @@ void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double
     if (atom->torque_flag) sd_hash_add_row(tag, pushed + 3, 3, sums + 2);
     sd_hash_add_row(tag, fluid, width, sums + 4);
     sd_hash_add_row(tag, &eta, 1, sums + 6);
-    const double kind = drives.holds_any() ? drives.known(i, given) : SD_BODY_FREE;
-    if (kind != SD_BODY_FREE) sd_hash_add_row(tag, given, 6, sums + 8);
-    sd_hash_add_row(tag, &kind, 1, sums + KINDS);
+    if (drives.holds_any() && drives.known(i, given) != SD_BODY_FREE) sd_hash_add_row(tag, given, 6, sums + 8);
     if (drives.stroke(i, stroke)) {
       const double row[6] = {stroke.e[0], stroke.e[1], stroke.e[2], stroke.B1, stroke.B2, stroke.beta};
       sd_hash_add_row(tag, row, 6, sums + 8);
     }
   }
-  MPI_Allreduce(sums, causes, CAUSES, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(sums, causes, KINDS, MPI_DOUBLE, MPI_SUM, world);
+  find_kinds(hydro, causes + KINDS);
+}
+
+/* The fingerprint of who is free, held, pinned or spun */
+void FixStokesDynamicsOverdamped::find_kinds(const Hydrodynamics &hydro, double *kinds) const
+{
+  double sums[CAUSES - KINDS] = {0.0}, given[6];
+  for (int i : hydro.ambient.who()) {
+    const double kind = drives.holds_any() ? drives.known(i, given) : SD_BODY_FREE;
+    sd_hash_add_row(atom->tag[i], &kind, 1, sums);
+  }
+  MPI_Allreduce(sums, kinds, CAUSES - KINDS, MPI_DOUBLE, MPI_SUM, world);
+}
+
+/* Of the velocities that have been found last: while atoms are as they were then */
+void FixStokesDynamicsOverdamped::note_causes(const Hydrodynamics &hydro)
+{
+  if (causes_due) find_causes(hydro, last.causes);
+  causes_due = false;
+}
+
+void FixStokesDynamicsOverdamped::post_run()
+{
+  note_causes(hydrodynamics());
 }
 
 /* Are there as many atoms as in the step of the last velocities, and do they follow from the same? */
@@ -67,10 +89,14 @@ bool FixStokesDynamicsOverdamped::causes_stand(const Hydrodynamics &hydro) const
 
 /* Spheres that are held, pinned or spun since now, or no longer (a dynamic group), jump to another
  * velocity: on the line through both those that are pinned would leave their place. */
-void FixStokesDynamicsOverdamped::forget_before_change(const double *causes)
+void FixStokesDynamicsOverdamped::forget_before_change(const Hydrodynamics &hydro)
 {
-  const double *now = causes + KINDS, *then = last.causes + KINDS;
-  if (fabs(now[0] - then[0]) <= 1e-8 * std::max(now[1], then[1])) return;
+  if (!drives.holds_any()) return;
+  double now[CAUSES - KINDS], *then = last.causes + KINDS;
+  find_kinds(hydro, now);
+  const bool same = fabs(now[0] - then[0]) <= 1e-8 * std::max(now[1], then[1]);
+  std::copy_n(now, (int) (CAUSES - KINDS), then);
+  if (same) return;
   before.clear();
   drives.before.clear();
 }

@@ -85,16 +85,16 @@ double FixStokesDynamicsOverdamped::change_of_velocities() const
   for (const ClumpPoses::Clump &clump : poses.clumps()) {
     const ClumpShape &is = poses.shape(clump);
     const int first = poses.body(clump).atom;
-    double now_V[6], from[3], arm[3], change[3];
+    double now_V[6], turned[6], from[3], change[3];    // turned: into the axes of the shape
     if (!before.has(first)) continue;
     tracked_velocity(clump, is, now_V);
     at_image(hydro, before[first], clump.pose + 9, old);
     for (int d = 0; d < 6; d++) old[d] = now_V[d] - old[d];
+    for (int half : {0, 3}) sd_multiply3t(clump.pose, old + half, turned + half);
     for (int k = 0; k < is.shape.n; k++) {
       sd_minus(is.shape.x + 3 * (size_t) k, tracked(is), from);
-      sd_multiply3(clump.pose, from, arm);
-      sd_cross(old + 3, arm, change);
-      for (int d = 0; d < 3; d++) change[d] += old[d];
+      sd_cross(turned + 3, from, change);
+      for (int d = 0; d < 3; d++) change[d] += turned[d];
       most = std::max(most, sd_dot(change, change) / (is.shape.a[k] * is.shape.a[k]));
     }
   }
@@ -149,6 +149,11 @@ double FixStokesDynamicsOverdamped::ideal_pressure() const
 }
 
 // --- restart -------------------------------------------------------------------------------------------------
+
+void FixStokesDynamicsOverdamped::write_state(NamedState &)
+{
+  if (causes_due) note_causes(hydrodynamics());
+}
 
 std::vector<SavedNumbers> FixStokesDynamicsOverdamped::saved()
 {

@@ -203,8 +203,8 @@ void Hydrodynamics::velocities(const Solve::Take &take, const Given &known, doub
   if (settings.rigid.apart()) {
     clump_poses.find();
     clump_poses.velocities(width(), take);
-    for (int i : solvers)
-      memory->rows.give(i);    // those that have one are known to have moved here
+    if (given_rows.first_in(epochs.selection))    // those that have one are known to have moved here
+      for (int i : solvers) memory->rows.give(i);
   } else
     status = find_motions(take, drawn, report);
   // v' is none of this: a solve for forces begins from nothing.

@@ -150,6 +150,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Since prepared, looked, warned_unconverged, warned_cut;
   /* rows of those that take no part (Epochs::selection) */
   Since cleared;
+  /* and rows of those that do, where motions are found (the same) */
+  Since given_rows;
   /* first step of the run that the last step was of */
   LAMMPS_NS::bigint began = -1;
 

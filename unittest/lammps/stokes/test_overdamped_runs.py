@@ -81,6 +81,16 @@ def test_a_run_goes_on_by_the_second_order_when_nothing_has_changed(simulation):
     assert np.abs(ends[1] - ends[0]).max() < 1e-13
 
 
+def test_a_restart_file_of_the_midst_of_a_run_is_that_of_its_end(simulation, tmp_path):
+    """Command restart: what velocities follow from is in the file before the run ends."""
+    words = [f"pair_style stokes_dynamics {ALL}", "pair_coeff * *"]
+    lines = input_lines(THREE, words, str(tmp_path / "data"), fix=False, box=[(-99.0, 99.0)] * 3, dt=0.5)
+    rest = [weight(THREE), FIX]
+    x = simulation().commands(lines + rest + [f"restart 12 {tmp_path}/half.*"]).run(20).x
+    again = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/half.12", *words] + rest)
+    assert np.abs(again.run(8).x - x).max() < 1e-13
+
+
 def test_a_sphere_moved_by_hand_starts_anew(simulation):
     """displace_atoms between runs: what was before the move says nothing of the path after it."""
     ends = []

@@ -150,12 +150,12 @@ static double tie_tolerance(const loop *c, double power)
 /* given.V of what is not known of V */
 static double spent_by_loads(const loop *c, const double *V)
 {
-  double sum = 0.0;
+  double sum[6] = {0.0};    /* six, none of which waits for the others */
   for (int b = 0; b < sd_bodies_count(c->A); b++)
     for (int d = 0; d < 6; d++)
       if (!sd_bodies_given(c->A, b, d))
-        sum += c->given[6 * (long) b + d] * V[6 * (long) b + d];
-  return sum;
+        sum[d] += c->given[6 * (long) b + d] * V[6 * (long) b + d];
+  return sum[0] + sum[1] + sum[2] + sum[3] + sum[4] + sum[5];
 }
 
 enum { NOISE, FORCES, LOADS };

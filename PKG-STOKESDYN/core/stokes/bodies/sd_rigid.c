@@ -8,7 +8,8 @@ void sd_rigid_move(const sd_rigid *K, const double *V, double *v)
 {
   for (long i = 0; i < K->n; i++, v += K->width) {
     const double *whole = V + 6 * (K->whole ? K->whole[i] : i);
-    memcpy(v, whole, sizeof(double) * (size_t) K->width);
+    memcpy(v, whole, 3 * sizeof(double));    /* of a length that the compiler knows: no call */
+    if (K->width > 3) memcpy(v + 3, whole + 3, 3 * sizeof(double));
     if (!K->arm) continue;
     double turning[3];
     sd_cross(whole + 3, K->arm + 3 * i, turning);

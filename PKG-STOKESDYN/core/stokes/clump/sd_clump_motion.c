@@ -108,33 +108,19 @@ void sd_clump_drag(const sd_shape *s, const sd_clump *clump, const sd_clump_moti
   drag_of_slip(clump, m, pose, eta, u, G, U, w, F, T);
 }
 
-/* Force and torque about the centroid c of forces f and torques t on the spheres */
-static void load_of(const sd_shape *s, const sd_clump_motion *m, const double c[3], const double *f,
-                    const double *t, double load[6])
-{
-  memset(load, 0, 6 * sizeof(double));
-  for (int k = 0; k < 3 * s->n; k += 3) {
-    double arm[3], couple[3];
-    sd_minus(m->x + k, c, arm);
-    sd_cross(arm, f + k, couple);
-    for (int d = 0; d < 3; d++) {
-      load[d] += f[k + d];
-      load[3 + d] += t[k + d] + couple[d];
-    }
-  }
-}
-
+/* G NULL: the flow is uniform */
 static void free_velocity(const sd_clump *clump, const double R[9], double eta, const double load[6],
-                          const double u[3], const double G[9], double V[6])
+                          const double u[3], const double *G, double V[6])
 {
   double E[6], f[6], v[6], shift[3];
-  sd_clump_split_gradient(R, G, V + 3, E);
   memcpy(V, u, 3 * sizeof(double));
+  memset(V + 3, 0, 3 * sizeof(double));
+  if (G) sd_clump_split_gradient(R, G, V + 3, E);
   sd_multiply3t(R, load, f);
   sd_multiply3t(R, load + 3, f + 3);
   for (int p = 0; p < 6; p++) {
     f[p] /= eta;
-    for (int e = 0; e < 6; e++) f[p] += clump->strain[6 * p + e] * E[e];
+    for (int e = 0; e < 6 && G; e++) f[p] += clump->strain[6 * p + e] * E[e];
   }
   /* mobility is about the centre of reaction, load and V are about the centroid */
   sd_cross(clump->centre, f, shift);
@@ -155,13 +141,12 @@ static void free_velocity(const sd_clump *clump, const double R[9], double eta, 
 }
 
 void sd_clump_settle(const sd_shape *s, const sd_clump *clump, const sd_clump_motion *m,
-                     const double pose[12], double eta, const double *f, const double *t, int held,
-                     double V[6], double *v, double *F, double *T)
+                     const double pose[12], double eta, const double load[6], int held, double V[6],
+                     double *v, double *F, double *T)
 {
-  double u[3], G[9], load[6];
+  double u[3], G[9];
   sd_clump_flow(s, m, pose, pose + 9, u, G);
-  load_of(s, m, pose + 9, f, t, load);
-  if (!held) free_velocity(clump, pose, eta, load, u, G, V);
+  if (!held) free_velocity(clump, pose, eta, load, u, m->u ? G : NULL, V);
   for (int k = 0; k < s->n; k++) {
     double arm[3], turning[3];
     sd_multiply3(pose, s->x + 3 * k, arm);

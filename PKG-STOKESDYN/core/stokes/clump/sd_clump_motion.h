@@ -6,6 +6,7 @@
 #define SD_CLUMP_MOTION_H
 
 #include "sd_clump.h"
+#include "sd_linear.h"
 
 SD_BEGIN_C
 
@@ -36,15 +37,26 @@ void sd_clump_flow(const sd_shape *shape, const sd_clump_motion *m, const double
 void sd_clump_drag(const sd_shape *shape, const sd_clump *clump, const sd_clump_motion *m,
                    const double pose[12], double eta, double *F, double *T);
 
-/* A clump without inertia that no other disturbs, in pose R, c: under forces f and torques t [3n] on its
- * spheres it moves with V [6], U of the centroid and W, unless V is given (held):
+/* Adds force and torque FT [6] at x to the load [6] about a point, from which x is at arm. */
+static inline void sd_clump_add_load(const double arm[3], const double FT[6], double load[6])
+{
+  double couple[3];
+  sd_cross(arm, FT, couple);
+  for (int d = 0; d < 3; d++) {
+    load[d] += FT[d];
+    load[3 + d] += FT[3 + d] + couple[d];
+  }
+}
+
+/* A clump without inertia that no other disturbs, in pose R, c: under the load on its spheres, force and
+ * torque about the centroid, it moves with V [6], U of the centroid and W, unless V is given (held):
  *   (U, W) = (u, curl u / 2) + N (load + eta C : E) / eta
  * u the flow at its centroid (sd_clump_flow) and E the strain there, N its mobility, C its force from
- * the strain for eta = 1, load: force and torque about the centroid. v [6n]: velocity and angular
- * velocity of its spheres; F, T [3n]: force and torque of the fluid on them. No allocation. */
+ * the strain for eta = 1. v [6n]: velocity and angular velocity of its spheres; F, T [3n] (NULL: not
+ * wanted): force and torque of the fluid on them. No allocation. */
 void sd_clump_settle(const sd_shape *shape, const sd_clump *clump, const sd_clump_motion *m,
-                     const double pose[12], double eta, const double *f, const double *t, int held,
-                     double V[6], double *v, double *F, double *T);
+                     const double pose[12], double eta, const double load[6], int held, double V[6],
+                     double *v, double *F, double *T);
 
 SD_END_C
 #endif

@@ -171,32 +171,35 @@ static void the_fluid_balances_what_acts_on_a_clump(void **state)
   for (int m = 0; m < N_CLUSTERS; m++) {
     scene s;
     sd_clump clump = solve_cluster(clusters[m], 1, 1);
-    double f[3 * MOST], t[3 * MOST], F[3 * MOST], T[3 * MOST], v[6 * MOST], V[6], pose[12];
-    double sum[6] = {0.0}, told[6] = {0.4, -0.2, 0.7, 0.1, 0.9, -0.5};
+    double on[6 * MOST], F[3 * MOST], T[3 * MOST], v[6 * MOST], V[6], pose[12];
+    double sum[6] = {0.0}, load[6] = {0.0}, about_first[6] = {0.0}, arm[3], told[6] = {0.4, -0.2, 0.7, 0.1, 0.9, -0.5};
     make(&s, clusters[m], &seed);
     memcpy(pose, s.R, sizeof(s.R));
     memcpy(pose + 9, s.c, sizeof(s.c));
-    for (int k = 0; k < 3 * s.n; k++) {
-      f[k] = uniform(&seed, -1.0, 1.0);
-      t[k] = uniform(&seed, -1.0, 1.0);
-    }
-    sd_clump_settle(&s.shape, &clump, &s.motion, pose, 1.7, f, t, 0, V, v, F, T);
     for (int k = 0; k < s.n; k++) {
-      double arm[3], left[3], couple[3], turning[3];
+      for (int d = 0; d < 6; d++) on[6 * k + d] = uniform(&seed, -1.0, 1.0);
+      sd_minus(s.x + 3 * k, s.x, arm);
+      sd_clump_add_load(arm, on + 6 * k, about_first);
+    }
+    sd_minus(s.x, s.c, arm);
+    sd_clump_add_load(arm, about_first, load);
+    sd_clump_settle(&s.shape, &clump, &s.motion, pose, 1.7, load, 0, V, v, F, T);
+    for (int k = 0; k < s.n; k++) {
+      double left[3], couple[3], turning[3];
       sd_minus(s.x + 3 * k, s.c, arm);
-      for (int d = 0; d < 3; d++) left[d] = F[3 * k + d] + f[3 * k + d];
+      for (int d = 0; d < 3; d++) left[d] = F[3 * k + d] + on[6 * k + d];
       sd_cross(arm, left, couple);
       sd_cross(V + 3, arm, turning);
       for (int d = 0; d < 3; d++) {
         sum[d] += left[d];
-        sum[3 + d] += couple[d] + T[3 * k + d] + t[3 * k + d];
+        sum[3 + d] += couple[d] + T[3 * k + d] + on[6 * k + 3 + d];
         CHECK_NEAR(v[6 * k + d], V[d] + turning[d], 1e-12);
         CHECK_NEAR(v[6 * k + 3 + d], V[3 + d], 0.0);
       }
     }
     for (int d = 0; d < 6; d++) CHECK_NEAR(sum[d], 0.0, 1e-9);
     memcpy(V, told, sizeof(V));
-    sd_clump_settle(&s.shape, &clump, &s.motion, pose, 1.7, f, t, 1, V, v, F, T);
+    sd_clump_settle(&s.shape, &clump, &s.motion, pose, 1.7, load, 1, V, v, F, T);
     for (int d = 0; d < 6; d++) CHECK_NEAR(V[d], told[d], 0.0);
     sd_clump_free(&clump);
     sd_shape_free(&s.shape);
