@@ -1,6 +1,8 @@
-/* Rows of four floats in vectors, each a part of 128 bits: of sd_lanes.h where it has floats. */
+/* Rows of four floats in vectors, each a part of 128 bits: of sd_rows.h where numbers are floats. */
 #ifndef SD_SINGLE_ROWS_H
 #define SD_SINGLE_ROWS_H
+
+#include "sd_lanes.h"
 
 /* Rows side by side, the rows of a vector, and in each part four rows of four that become four columns:
  * eight shuffles, two levels of pairs. WIDE: the instruction of a whole vector. */

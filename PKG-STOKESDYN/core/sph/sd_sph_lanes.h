@@ -5,7 +5,7 @@
 #include "sd_sph_kernel.h"
 
 #define LEAST_LANES 4 /* rows have four numbers */
-#include "sd_lanes.h"
+#include "sd_rows.h"
 
 INLINE yes_no same(long long a)
 {

@@ -70,3 +70,29 @@ def test_a_name_of_a_function_stands_in_one_file():
                 found.setdefault(name, set()).add(path.name)
     assert len(found) > 900
     assert {name: files for name, files in found.items() if len(files) > 1} == {}
+
+
+def sources_below():
+    """{source: sources that it calls}, {header: headers that it includes} of the core"""
+    texts = {path: re.sub(r"/\*.*?\*/|//[^\n]*", "", path.read_text(), flags=re.S) for path in (TOP / "PKG-STOKESDYN/core").rglob("*.[ch]")}
+    sources = {path: text for path, text in texts.items() if path.suffix == ".c"}
+    headers = {path.name: text for path, text in texts.items() if path.suffix == ".h"}
+    defined = {name: path.name for path, text in sources.items()
+               for name in re.findall(r"^(?!static|typedef)\w[\w *]*?\b(sd_\w+)\([^;{}]*\)\s*\{", text, re.M)}
+    calls = {path.name: {defined[name] for name in re.findall(r"\b(sd_\w+)\(", text) if name in defined} for path, text in sources.items()}
+    includes = {name: {other for other in re.findall(r'#include "([^"]+)"', text) if other in headers} for name, text in headers.items()}
+    return calls, includes
+
+
+def circles(arrows):
+    """What is left when files that stand on nothing are taken away, again and again: circles, and what stands on them"""
+    left = {name: below - {name} for name, below in arrows.items()}
+    while ground := {name for name, below in left.items() if not below & set(left)}:
+        left = {name: below for name, below in left.items() if name not in ground}
+    return left
+
+
+def test_no_files_of_the_core_call_or_include_each_other_in_a_circle():
+    calls, includes = sources_below()
+    assert "sd_tie.c" in calls["sd_bodies.c"] and "sd_ewald_box.h" in includes["sd_ewald_chosen.h"]
+    assert circles(calls) == {} and circles(includes) == {}

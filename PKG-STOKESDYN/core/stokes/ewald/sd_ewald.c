@@ -339,3 +339,12 @@ sd_status sd_ewald_choose_in_slab(const sd_ewald_box *box, int across, double sp
   }
   return status;
 }
+
+int sd_ewald_same_tables(const sd_ewald *made, const sd_ewald *wanted)
+{
+  sd_ewald there = *made;
+  for (int d = 0; d < 3 && !made->box.periodic; d++)
+    if (!made->images.wall.sign || made->images.wall.axis != d)
+      there.box.origin[d] = wanted->box.origin[d];
+  return !memcmp(&there, wanted, sizeof(there));
+}

@@ -19,84 +19,11 @@
 #ifndef SD_EWALD_H
 #define SD_EWALD_H
 
+#include "sd_ewald_chosen.h"
+#include "sd_ewald_sizes.h"
 #include "sd_status.h"
-#include "sd_wall.h"
 
 SD_BEGIN_C
-
-/* --- what is chosen --- */
-
-/* The box with edges (lx 0 0), (xy ly 0), (xz yz lz). Spheres may stand outside of a periodic one;
- * an open one holds the centres of all and has no tilt: nothing is beyond it but fluid.
- *   edge [3]   lx ly lz      length, > 0
- *   tilt [3]   xy xz yz      length */
-typedef struct {
-  int periodic;
-  double origin[3], edge[3], tilt[3];
-} sd_ewald_box;
-
-/* length^3 */
-static inline double sd_ewald_volume(const sd_ewald_box *box)
-{
-  return box->edge[0] * box->edge[1] * box->edge[2];
-}
-
-/* 2 pi times the reciprocal edges, 1/length: row d is across the other two edges and has 2 pi along
- * edge d, so that the wave of numbers n has k = n_1 k[0] + n_2 k[1] + n_3 k[2]. */
-void sd_ewald_reciprocal(const sd_ewald_box *box, double k[3][3]);
-
-/* Images in a plane wall, of an open box: they have a smooth part of their own on the same grid
- * (sd_image_wave.h), and what it leaves of a pair ends at a range, from a sphere to an image. */
-typedef struct {
-  /* sign 0: there is no wall */
-  sd_wall wall;
-  double xi, range;
-  /* 0: the filters are those of a Gaussian; else their waves end here, 1/length (sd_image_wave.h) */
-  double band;
-} sd_ewald_images;
-
-/* A box that is periodic in two directions alone (sd_slab.h), as a periodic one that is taller: the
- * direction that is not, and how many planes of the grid across it hold something; 0: all, and there is
- * no such direction */
-typedef struct {
-  int across, planes;
-} sd_ewald_slab;
-
-/* What an engine is made from. Ready after sd_ewald_choose; all lengths as given. */
-typedef struct {
-  sd_ewald_box box;
-  /* no spheres: 0, and the rest is not read */
-  double count;
-  /* splitting, 1/length; its reference radius; where the near part ends, centre to centre; the
-   * largest sphere */
-  double xi, a_ref, range, largest;
-  /* 0: H is a Gaussian's; else waves end here, 1/length (sd_radial.h), and velocities are wanted of spheres
-   * (sized) or at points, where a_ref is of the sources alone */
-  double band;
-  int sized;
-  /* near pairs, windows, grid and its transforms are of floats (SD_EWALD_SINGLE) */
-  int single;
-  /* how far ghosts must reach: range, or that of images */
-  double reach;
-  /* grid points of the box each way; those of an open box are an eighth of the grid, which is
-   * twice as large; no spacing is larger than this one, which an open box has */
-  int grid[3];
-  double spacing;
-  /* the window: so many grid points each way, and its parameter (Kaiser-Bessel) */
-  int points;
-  double beta;
-  /* what was asked for: rms error of U over rms of F/(6 pi eta a) */
-  double tolerance;
-  /* xi of a smoother splitting, whose waves these spheres have too: this one's are less by them
-   * (sd_ewald_levels.h). 0: there is none */
-  double taken;
-  /* both parts are positive: xi times the largest radius is at most this. 0: nobody asked for that */
-  double positive;
-  sd_ewald_images images;
-  sd_ewald_slab slab;
-} sd_ewald;
-
-/* --- the choice --- */
 
 /* See sd_ewald_choose_positive: of spheres, and of points of shells with the one-body addition
  * (sd_multiblob.h) */
@@ -106,25 +33,6 @@ typedef struct {
 /* From this tolerance on sums that have no walls and draw no noise are of floats, whose own error is
  * below a tenth of it; unless the range is a thousand radii, which few spheres in a huge box have. */
 #define SD_EWALD_SINGLE 1e-5
-
-/* The widest window; classes of radii */
-enum { SD_EWALD_MOST_POINTS = 20, SD_EWALD_OCTAVES = 10 };
-
-/* The spheres that take part, of all ranks: how many, sums of a^2 and a^4, the largest a; length.
- * The rule reads them rounded to six digits, since sums over ranks differ in the last ones. */
-typedef struct {
-  double count, squares, fourths, largest;
-} sd_ewald_class;
-
-/* All of them; and by octaves, which only sd_ewald_levels.h reads: k has those from
- * largest/2^(k + 1) to largest/2^k, that one not included except in octave 0, and the last all that
- * are smaller. */
-typedef struct {
-  sd_ewald_class all, octave[SD_EWALD_OCTAVES];
-} sd_ewald_sizes;
-
-/* One more sphere; all.largest is known already. */
-void sd_ewald_count(sd_ewald_sizes *s, double a);
 
 /* The rule, for a box and its spheres.
  *   width       3, or 6 with torques
@@ -162,20 +70,9 @@ sd_status sd_ewald_choose_in_slab(const sd_ewald_box *box, int across, double sp
 sd_status sd_ewald_choose_at_points(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,
                                     double points, double tolerance, sd_ewald *out);
 
-/* An open box for spheres with centres within lo [3] ... hi [3] (of all ranks): the present one if
- * it can hold them and no edge is more than 1.5 times what they need, else one with a twentieth of
- * their extent to spare on each side, so that it lasts while they move. It stands around their
- * middle and goes along with them, but not along the direction `still`, that of a wall (-1: there is
- * none). A box with edge[0] = 0 is none. Returns 1 if the edges are new ones. */
-int sd_ewald_box_around(sd_ewald_box *box, int still, const double *lo, const double *hi,
-                        double largest);
-
 /* Do tables made for one splitting serve the other? An open box may stand elsewhere, but not nearer
  * to a wall. */
 int sd_ewald_same_tables(const sd_ewald *made, const sd_ewald *wanted);
-
-/* The next number whose only prime factors are 2, 3, 5 and 7: fast to transform */
-int sd_ewald_transformable(double at_least);
 
 SD_END_C
 #endif

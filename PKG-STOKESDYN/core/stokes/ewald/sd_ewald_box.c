@@ -1,10 +1,9 @@
-/* The box of an Ewald sum, and the spheres in it by their radii */
+#include "sd_ewald_box.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "sd_constants.h"
-#include "sd_ewald.h"
-#include "sd_ewald_rule_internal.h"
 
 /* --- edges and waves --- */
 
@@ -46,32 +45,6 @@ double sd_ewald_narrowest(const sd_ewald_box *b)
   return fmin(lz, fmin(V / yz_face, V / xz_face));
 }
 
-/* --- radii --- */
-
-void sd_ewald_add_class(sd_ewald_class *sum, const sd_ewald_class *s)
-{
-  sum->count += s->count;
-  sum->squares += s->squares;
-  sum->fourths += s->fourths;
-  sum->largest = fmax(sum->largest, s->largest);
-}
-
-/* Of spheres up to the radius `largest`, which octave is one of radius a > 0? */
-static int octave_of(double largest, double a)
-{
-  int k = 0;
-  while (k + 1 < SD_EWALD_OCTAVES && a < ldexp(largest, -k - 1)) k++;
-  return k;
-}
-
-void sd_ewald_count(sd_ewald_sizes *s, double a)
-{
-  const double a2 = a * a;
-  const sd_ewald_class one = {1.0, a2, a2 * a2, a};
-  sd_ewald_add_class(&s->all, &one);
-  sd_ewald_add_class(s->octave + octave_of(s->all.largest, a), &one);
-}
-
 /* --- a box that stays --- */
 
 int sd_ewald_box_around(sd_ewald_box *box, int still, const double *lo, const double *hi,
@@ -91,13 +64,4 @@ int sd_ewald_box_around(sd_ewald_box *box, int still, const double *lo, const do
     if (!holds || d != still) box->origin[d] = 0.5 * (lo[d] + hi[d] - box->edge[d]);
   }
   return !holds;
-}
-
-int sd_ewald_same_tables(const sd_ewald *made, const sd_ewald *wanted)
-{
-  sd_ewald there = *made;
-  for (int d = 0; d < 3 && !made->box.periodic; d++)
-    if (!made->images.wall.sign || made->images.wall.axis != d)
-      there.box.origin[d] = wanted->box.origin[d];
-  return !memcmp(&there, wanted, sizeof(there));
 }

@@ -3,7 +3,7 @@
 #ifndef SD_EWALD_COST_H
 #define SD_EWALD_COST_H
 
-#include "sd_ewald.h"
+#include "sd_ewald_chosen.h"
 
 SD_BEGIN_C
 

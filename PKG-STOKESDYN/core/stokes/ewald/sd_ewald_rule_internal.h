@@ -2,7 +2,9 @@
 #ifndef SD_EWALD_RULE_INTERNAL_H
 #define SD_EWALD_RULE_INTERNAL_H
 
-#include "sd_ewald.h"
+#include "sd_ewald_chosen.h"
+#include "sd_ewald_sizes.h"
+#include "sd_status.h"
 
 /* Waves that fall as a Gaussian, for the spheres s; width as in sd_ewald_choose, tolerance within
  * its limits. SD_OK or SD_ENOMEMORY. */
@@ -23,15 +25,8 @@ sd_status sd_ewald_prepare(const sd_ewald_box *box, const sd_ewald_class *all, d
  * grid around it is twice as large. SD_OK or SD_ENOMEMORY */
 sd_status sd_ewald_lay_grid(const sd_ewald_box *box, double h, int points, double *spacing, int *grid);
 
-/* Length of edge d of the box, since a grid spans the edges and not the widths; and the smallest distance
- * between opposite faces */
-double sd_ewald_edge_length(const sd_ewald_box *b, int d);
-double sd_ewald_narrowest(const sd_ewald_box *b);
-
 /* Rounded, so that ranks whose sums differ in the last bits have the same number, but for the rare one that
  * lies on the border; the caller hands out sums that are equal anyway. */
 double sd_ewald_six_digits(double value);
-
-void sd_ewald_add_class(sd_ewald_class *sum, const sd_ewald_class *s);
 
 #endif

@@ -3,7 +3,8 @@
 #ifndef SD_EWALD_SPLITTING_INTERNAL_H
 #define SD_EWALD_SPLITTING_INTERNAL_H
 
-#include "sd_ewald.h"
+#include "sd_ewald_chosen.h"
+#include "sd_ewald_sizes.h"
 
 /* How H falls: as a Gaussian, or to 0 at a band (sd_radial.h). For the same error a band needs less than
  * half of the grid. The functions of a Gaussian are known in closed form, which walls, two levels

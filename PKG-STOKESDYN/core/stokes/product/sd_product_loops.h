@@ -5,6 +5,7 @@
 #define SD_PRODUCT_LOOPS_H
 
 #include "sd_product_internal.h"
+#include "sd_rows.h"
 #include "sd_steps.h"
 #include "sd_tensor_lanes.h"
 

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "sd_constants.h"
-#include "sd_ewald_pairs.h"
 #include "sd_ewald_rows.h"
 #include "sd_linear.h"
 #include "sd_room.h"

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "sd_constants.h"
+#include "sd_ewald_groups.h"
 #include "sd_ewald_rows.h"
 #include "sd_room.h"
 
@@ -36,11 +37,6 @@ void sd_ewald_pairs_free(sd_ewald_pairs *p)
 }
 
 /* --- rows in order of cells --- */
-
-static double *centres_of(const sd_ewald_pairs *p)
-{
-  return p->u;
-}
 
 static size_t numbers_of_sum(const sd_ewald_pairs *p)
 {
@@ -81,7 +77,7 @@ static sd_status sort_spheres(sd_ewald_pairs *p, int n, int n_all)
 
 static void pairs_fill_rows(sd_ewald_pairs *p)
 {
-  double largest = 0.0, *centre = centres_of(p);
+  double largest = 0.0, *centre = sd_ewald_centres(p);
   for (int k = 0; k < p->rows; k++) largest = fmax(largest, p->spheres.a[p->sphere[k]]);
   p->scale = largest > 0.0 ? ldexp(1.0, -ilogb(largest)) : 1.0;
   p->equal = 1;
@@ -105,16 +101,6 @@ static long keep_ours(sd_ewald_pairs *p, int n, long begin, long end)
   }
   while ((ours - begin) % p->full) p->neighbor[ours++] = p->rows;
   return ours;
-}
-
-long sd_ewald_pairs_near(sd_ewald_pairs *p, int row, int ranges, const int *range, long many)
-{
-  const double range2 = p->ewald.range * p->ewald.range, *centre = centres_of(p) + row;
-  const double x[3] = {centre[0], centre[p->rows], centre[2 * (long) p->rows]};
-  int *list = p->neighbor + many;
-  long found = p->doubles->search(centres_of(p), p->rows, range, ranges, x, range2, list);
-  while (found % p->full) list[found++] = p->rows;
-  return many + found;
 }
 
 typedef struct {
@@ -153,30 +139,6 @@ sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, const sd_
 }
 
 /* --- product --- */
-
-/* The kernels' table: lengths scaled, and times 8 pi. */
-sd_near_part sd_ewald_pairs_part(const sd_ewald_pairs *p)
-{
-  sd_near_part k = {.rows = p->rows,
-                    .width = p->width,
-                    .first = p->first,
-                    .neighbor = p->neighbor,
-                    .row = p->row,
-                    .torque_row = p->torque_row,
-                    .u = p->u,
-                    .degree = p->degree};
-  k.unit = p->scale / sd_ewald_pairs_steps(p);
-  const double s = p->scale, range = p->ewald.range * s, ref = p->ewald.a_ref * s;
-  k.range2 = range * range;
-  k.ref2 = ref * ref;
-  k.equal = p->equal;
-  static const int power[SD_RADIALS] = {1, 3, 3, 5, 5, 7, 3, 5};
-  for (int f = 0; f < SD_RADIALS; f++) {
-    const double unit = 8.0 * SD_PI / pow(s, power[f]);
-    for (int m = 0; m <= p->degree; m++) k.coefficient[f][m] = unit * p->coefficient[f][m];
-  }
-  return k;
-}
 
 /* For forces whose sizes have this sum, so that all are at most 1; where floats hold them anyway, 1, which
  * leaves their digits alone. */

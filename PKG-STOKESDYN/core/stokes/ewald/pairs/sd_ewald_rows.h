@@ -3,7 +3,7 @@
 #ifndef SD_EWALD_ROWS_H
 #define SD_EWALD_ROWS_H
 
-#include "sd_ewald_pairs.h"
+#include "sd_ewald_near.h"
 
 /* Coordinates of the row that stands for nothing: no force, and far from everything */
 #define SD_NOWHERE 1e16
@@ -19,11 +19,5 @@ struct sd_ewald_rows {
 };
 
 extern const struct sd_ewald_rows sd_ewald_rows_doubles, sd_ewald_rows_floats;
-
-/* Of floats: how many of the whole numbers that are coordinates make a length; 2^32 are four ranges. */
-static inline double sd_ewald_pairs_steps(const sd_ewald_pairs *p)
-{
-  return 0x1p30 / p->ewald.range;
-}
 
 #endif
