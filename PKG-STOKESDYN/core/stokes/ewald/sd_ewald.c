@@ -102,7 +102,7 @@ sd_status sd_ewald_lay_grid(const sd_ewald_box *box, double h, int points, doubl
     const double cells = sd_ewald_edge_length(box, d) / h;
     if (!(cells < 1e6)) return SD_ENOMEMORY;
     if (box->periodic)
-      grid[d] = 2 * sd_ewald_transformable(0.5 * fmax(cells, points + 2));
+      grid[d] = sd_ewald_transformable(fmax(cells, points + 2));
     else
       grid[d] = sd_ewald_transformable(ceil(cells) + points + 1);
     all *= grid[d];
@@ -265,7 +265,7 @@ static sd_status lay_planes(sd_ewald *e, int across, double span)
     if (d != across) h = fmax(h, sd_ewald_edge_length(&e->box, d) / e->grid[d]);
   const double cells = (span + fmax(e->range, (e->points + 2) * h)) / h;
   if (!(cells < 1e6)) return SD_ENOMEMORY;
-  e->grid[across] = 2 * sd_ewald_transformable(0.5 * cells);
+  e->grid[across] = sd_ewald_transformable(cells);
   e->box.edge[across] = h * e->grid[across];
   e->spacing = h;
   e->slab = (sd_ewald_slab){across, (int) ceil(span / h + e->points) + 2};

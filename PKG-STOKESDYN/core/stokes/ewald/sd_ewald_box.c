@@ -9,7 +9,7 @@
 
 int sd_ewald_transformable(double at_least)
 {
-  for (int n = (int) ceil(at_least);; n++) {
+  for (int n = 2 * (int) ceil(0.5 * at_least);; n += 2) {
     int m = n;
     for (int p = 2; p < 8; p++)
       while (m % p == 0) m /= p;

@@ -139,6 +139,34 @@ size_t sd_grid_brick_numbers(const sd_grid *g)
   return (size_t) (g->layer * g->n[0]) + 64;
 }
 
+/* A core takes a load for one of what it has just stored if both addresses have the same last twelve bits, and
+ * waits. So rows that one window touches in turn, of this layer and of the next one, must differ there by more
+ * than their length: with rows of 2 kB spreading took three times as long. */
+static int apart(long bytes, long row, long layer)
+{
+  enum { PAGE = 4096, NUMBERS = 24, ROWS = 5 };
+  for (int p = 0; p < 2; p++)
+    for (int q = p ? -ROWS : 1; q <= ROWS; q++) {
+      const long off = labs(bytes * (p * layer + q * row)) % PAGE;
+      if (off < NUMBERS * bytes || off > PAGE - NUMBERS * bytes) return 0;
+    }
+  return 1;
+}
+
+/* Numbers from row to row and from layer to layer of the brick. Vectors of the windows end beyond the last point. */
+static void stride(sd_grid *g)
+{
+  enum { STEP = 8, TRIES = 16 };
+  const long row = (3 * (long) g->n[2] + STEP - 1) / STEP * STEP + STEP, bytes = (long) g->bytes;
+  for (int k = 0; k < TRIES * TRIES; k++) {
+    g->row = row + k / TRIES * STEP;
+    g->layer = g->row * g->n[1] + k % TRIES * STEP;
+    if (apart(bytes, g->row, g->layer)) return;
+  }
+  g->row = row;
+  g->layer = row * g->n[1];
+}
+
 sd_status sd_grid_place(sd_grid *g, const int *bricks)
 {
   const int *own = bricks + 6 * g->me;
@@ -146,9 +174,7 @@ sd_status sd_grid_place(sd_grid *g, const int *bricks)
     g->lo[d] = own[d];
     g->n[d] = own[3 + d];
   }
-  g->row =
-      (3 * (long) g->n[2] + 7) / 8 * 8 + 8; /* vectors of the windows end beyond the last point */
-  g->layer = g->row * g->n[1];
+  stride(g);
   sd_grid_list_pieces(g, bricks, NULL, NULL, &g->outs, &g->ins);
   if (!sd_reserve(&g->out, sizeof(sd_piece), (size_t) g->outs, &g->out_room) ||
       !sd_reserve(&g->in, sizeof(sd_piece), (size_t) g->ins, &g->in_room))
