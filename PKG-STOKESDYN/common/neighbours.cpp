@@ -50,6 +50,14 @@ bool fits(const std::string &styles, const std::string &style)
   return false;
 }
 
+bool stands_behind(const Guest &guest, const char *style)
+{
+  const Modify *modify = guest.lmp->modify;
+  for (int k = 0; k < modify->nfix && modify->fix[k] != guest.fix; k++)
+    if (fits(style, modify->fix[k]->style)) return true;
+  return false;
+}
+
 // --- who is there --------------------------------------------------------------------------------
 
 /* Those of the kind that the row names; of pair and bond styles a hybrid itself, then those below it */

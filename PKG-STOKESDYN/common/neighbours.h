@@ -75,6 +75,9 @@ class Neighbourhood {
 /* Does one of these names (Neighbour::styles) fit? */
 bool fits(const std::string &styles, const std::string &style);
 
+/* Does the guest, a fix, stand in the input behind one of this style? */
+bool stands_behind(const Guest &guest, const char *style);
+
 /* What this pair or bond style would write into data files, as far as it acts on atoms of ours:
  * lines of numbers, of a pair style i j and the coefficients of these types, of a bond style the
  * type and its coefficients; empty: it writes none. On all ranks together. */

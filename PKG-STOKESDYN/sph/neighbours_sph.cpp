@@ -6,10 +6,7 @@
 #include "fix.h"
 #include "force.h"
 #include "group.h"
-#include "modify.h"
 #include "update.h"
-
-#include <cstring>
 
 using namespace LAMMPS_NS;
 
@@ -34,11 +31,7 @@ static bool is_dynamic(const Guest &guest, std::string &says)
 
 static bool stands_behind_grains(const Guest &guest, std::string & /*says*/)
 {
-  const Modify *modify = guest.lmp->modify;
-  bool behind = false;
-  for (int k = 0; k < modify->nfix && modify->fix[k] != guest.fix; k++)
-    behind = behind || strcmp(modify->fix[k]->style, FixSphGrains::STYLE) == 0;
-  return behind;
+  return stands_behind(guest, FixSphGrains::STYLE);
 }
 
 static bool stands_before_grains(const Guest &guest, std::string &says)

@@ -2,21 +2,13 @@
 
 #include "fix_hydro_vans.h"
 
-#include "modify.h"
-
-#include <cstring>
-
 using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
 static bool stands_before_stream(const Guest &guest, std::string & /*says*/)
 {
-  const Modify *modify = guest.lmp->modify;
-  bool behind = false;
-  for (int k = 0; k < modify->nfix && modify->fix[k] != guest.fix; k++)
-    behind = behind || strcmp(modify->fix[k]->style, FixHydroVans::STYLE) == 0;
-  return !behind;
+  return !stands_behind(guest, FixHydroVans::STYLE);
 }
 
 const std::vector<Neighbour> &vans_neighbours()
