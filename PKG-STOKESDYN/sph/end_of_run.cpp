@@ -3,6 +3,8 @@
 #include "ranks.h"
 #include "sph.h"
 
+#include "sd_hash.h"
+
 #include "atom.h"
 #include "domain.h"
 #include "update.h"
@@ -12,20 +14,6 @@
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
-
-static constexpr uint64_t ODD = 0x9E3779B97F4A7C15u;
-
-static uint64_t mixed(uint64_t hash, uint64_t bits)
-{
-  hash = (hash ^ bits) * ODD;
-  return hash ^ hash >> 29;
-}
-
-/* A number from -1 to 1 that is k's alone */
-static double weight_of_number(uint64_t k)
-{
-  return (double) (int64_t) mixed(mixed(k, ODD), k) * 0x1p-63;
-}
 
 void EndOfRun::record(int groupbit)
 {
@@ -40,14 +28,10 @@ void EndOfRun::record(int groupbit)
     for (int d = 0; d < 3; d++) {
       uint64_t bits;
       memcpy(&bits, &atom->v[i][d], sizeof(bits));
-      hash = mixed(hash, bits);
+      hash = sd_hash_mix((hash ^ bits) * SD_HASH_STEP);
     }
     hashes += hash;
-    for (int k = 0; k < 5; k++) {
-      const double part = weight_of_number(5 * tag + k) * where[k];
-      mine[0] += part;
-      mine[1] += std::fabs(part);
-    }
+    sd_hash_add_row(tag, where, 5, mine);
   }
   velocities = 0;
   for (const uint64_t part : from_all<uint64_t>(world, {hashes})) velocities += part;

@@ -1,5 +1,5 @@
-/* How a run ended: the sum of a hash of all velocities of a group, and of all places, radii and masses,
- * each with a weight of its own. If they are the same when a run begins, nobody has changed any of
+/* How a run ended: the sum of a hash of all velocities of a group, and the fingerprint of all places, radii
+ * and masses (sd_hash_add_row). If they are the same when a run begins, nobody has changed any of
  * them in between, and what the last step found with velocities at half step still stands.
  * Velocities must be the same to the bit; unwrapped places are so within rounding (common/resume.h
  * has rows, which cost 64 bytes an atom; sums have no order, so that 24 bytes in all will do on any
@@ -27,7 +27,7 @@ class EndOfRun : protected LAMMPS_NS::Pointers {
   void read(const NamedState &);
 
  private:
-  /* sum of the weighted numbers, and of their sizes: negative before any run has ended */
+  /* the fingerprint, and the sum of the sizes of its numbers: negative before any run has ended */
   double places = 0.0, size = -1.0;
   uint64_t velocities = 0;
 };
