@@ -164,7 +164,6 @@ INLINE void share_of_pairs(int width, int targets, pair_sum *add, const law *w, 
       }
       give_sums(p, width, &sums, end);
     }
-    give_sums(p, width, &sums, end);
   }
 }
 
