@@ -78,9 +78,9 @@ typedef struct {
  *                              g_xx phi_x'' phi_y + g_yy phi_x phi_y'' + 2 g_xy phi_x' phi_y',
  *                              phi_x' phi_y,  phi_x phi_y'
  *
- * V_t [points of z][3]; one term for equal radii, with torques three (all but the second); two for any radii in
- * an orthogonal box, all four with torques or in a triclinic one. g_de are products of the gradients of grid
- * coordinates. */
+ * V_t [points of z][3]; one term for equal radii, with torques three (all but the second); two for any
+ * radii in an orthogonal box, all four with torques or in a triclinic one. g_de are products of the
+ * gradients of grid coordinates. */
 typedef struct {
   int n, width, terms;
   const sd_window *window;

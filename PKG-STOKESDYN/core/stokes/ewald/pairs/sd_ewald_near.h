@@ -76,8 +76,8 @@ static inline double sd_ewald_pairs_steps(const sd_ewald_pairs *p)
   return 0x1p30 / p->ewald.range;
 }
 
-/* Neighbours of a row among so many ranges of rows, behind the first `many` of all; returns how many there are
- * then. And the kernels' table: lengths scaled, and times 8 pi. */
+/* Neighbours of a row among so many ranges of rows, behind the first `many` of all; returns how many there
+ * are then. And the kernels' table: lengths scaled, and times 8 pi. */
 long sd_ewald_pairs_near(sd_ewald_pairs *p, int row, int ranges, const int *range, long many);
 sd_near_part sd_ewald_pairs_part(const sd_ewald_pairs *p);
 
