@@ -114,23 +114,14 @@ def of_grains(runs):
     return steady(runs, 1.5, 1.0)
 
 
-def sweep(out, n, sets):
+def sweep(out, n, sets, peclets=PECLETS, most_strain=8.0, part=1.0):
+    """part: of the usual length of a block, where runs are short"""
     for phi in PHIS:
         places = list(hard_spheres(n, phi, sets, seed=1 + int(100 * phi)))
-        for peclet in PECLETS:
-            strain = min(8.0, 3.0 * peclet)
+        for peclet in peclets:
+            strain = min(1.0, 0.375 * peclet) * most_strain
             runs = [brownian(out, x, edge, peclet, strain, 4711 + k) for k, (x, edge) in enumerate(places)]
-            yield told(dict(phi=phi, Pe=peclet, **of_brownian(runs, peclet)))
-
-
-def larger(out, n, sets):
-    """Short runs, so that blocks are shorter as well"""
-    for phi in PHIS:
-        places = list(hard_spheres(n, phi, sets, seed=1 + int(100 * phi)))
-        for peclet in LARGER:
-            strain = min(4.0, 1.5 * peclet)
-            runs = [brownian(out, x, edge, peclet, strain, 4711 + k) for k, (x, edge) in enumerate(places)]
-            yield told(dict(phi=phi, Pe=peclet, **of_brownian(runs, peclet, 0.25)))
+            yield told(dict(phi=phi, Pe=peclet, **of_brownian(runs, peclet, part)))
 
 
 def friction(out, n, sets):
@@ -287,7 +278,7 @@ def main():
         write(sweep(given.out, given.spheres, given.sets), made / "sweep.csv", what)
         write(friction(given.out, given.spheres, given.sets), made / "friction.csv", what)
     if given.larger:
-        rows = larger(given.out, given.spheres, given.sets)
+        rows = sweep(given.out, given.spheres, given.sets, LARGER, 4.0, 0.25)
         write(rows, made_larger / "larger.csv", f"{given.spheres} spheres, as sweep.csv")
     brownian_rows, grain_rows = read_table(made / "sweep.csv"), read_table(made / "friction.csv")
     larger_rows = read_table(made_larger / "larger.csv")
