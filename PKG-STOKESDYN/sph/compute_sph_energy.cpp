@@ -3,7 +3,6 @@
 #include "fix_sph_settings.h"
 #include "fix_sph_tension.h"
 #include "fixes.h"
-#include "lammps_compat.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
 
@@ -35,7 +34,7 @@ int FixSphEnergy::setmask()
 
 sd_sph_members FixSphEnergy::group()
 {
-  pair = Sph::prepared_pair(voice);
+  pair = PairSph::prepared(voice);
   states = fixes_of<FixSphPressure>(lmp);
   gravities = fixes_of(lmp, "gravity");
   tensions = fixes_of<FixSphTension>(lmp);
@@ -228,12 +227,10 @@ std::vector<SavedNumbers> FixSphEnergy::saved()
 
 ComputeSphEnergy::ComputeSphEnergy(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), voice(lmp, "Compute sph/energy"),
-    memory_id(std::string(id) + "_SPH_ENERGY")
+    own_fix(voice, std::string(id) + "_SPH_ENERGY", FixSphEnergy::STYLE)
 {
   Keywords(lmp, voice.command, words(narg, arg), 3).parse({});
-  if (Compat::fix(modify, memory_id))
-    voice.fail("the fix ID " + memory_id + " is taken; give that fix another ID");
-  modify->add_fix(memory_id + " " + group->names[igroup] + " " + FixSphEnergy::STYLE);
+  own_fix.make("", group->names[igroup]);
   scalar_flag = vector_flag = 1;
   extscalar = extvector = 1;
   size_vector = FixSphEnergy::VALUES;
@@ -242,8 +239,7 @@ ComputeSphEnergy::ComputeSphEnergy(LAMMPS *lmp, int narg, char **arg) :
 
 ComputeSphEnergy::~ComputeSphEnergy()
 {
-  const Fix *fix = modify->nfix > 0 ? Compat::fix(modify, memory_id) : nullptr;
-  if (fix && strcmp(fix->style, FixSphEnergy::STYLE) == 0) modify->delete_fix(memory_id);
+  own_fix.take_away();
 }
 
 void ComputeSphEnergy::init()
@@ -254,9 +250,8 @@ void ComputeSphEnergy::init()
 void ComputeSphEnergy::compute_vector()
 {
   invoked_vector = update->ntimestep;
-  Fix *fix = Compat::fix(modify, memory_id);
-  if (!fix || strcmp(fix->style, FixSphEnergy::STYLE) != 0)
-    voice.fail("the fix " + memory_id + " has been deleted, but this compute needs it");
+  Fix *fix = own_fix.find();
+  if (!fix) voice.fail("the fix " + own_fix.id + " has been deleted, but this compute needs it");
   static_cast<FixSphEnergy *>(fix)->values(vector);
 }
 

@@ -3,6 +3,7 @@
 #ifndef SD_COMPUTE_SPH_ENERGY_H
 #define SD_COMPUTE_SPH_ENERGY_H
 
+#include "own_fix.h"
 #include "sph.h"
 
 #include "compute.h"
@@ -85,7 +86,7 @@ class ComputeSphEnergy : public LAMMPS_NS::Compute {
   const Voice voice;
   double of_moment[FixSphEnergy::VALUES] = {0.0};
   /* the fix that follows the run */
-  const std::string memory_id;
+  const OwnFix own_fix;
 };
 
 }    // namespace StokesDyn

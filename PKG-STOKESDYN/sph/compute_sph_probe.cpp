@@ -39,7 +39,7 @@ ComputeSphProbe::ComputeSphProbe(LAMMPS *lmp, int narg, char **arg) :
 
 void ComputeSphProbe::init()
 {
-  pair = Sph::require_pair(voice);
+  pair = PairSph::of(voice);
 }
 
 double ComputeSphProbe::volume(int i) const
@@ -143,7 +143,7 @@ double ComputeSphProbe::height(const Probe &probe) const
 
 void ComputeSphProbe::compute_vector()
 {
-  pair = Sph::prepared_pair(voice);
+  pair = PairSph::prepared(voice);
   invoked_vector = update->ntimestep;
   for (size_t k = 0; k < probes.size(); k++)
     vector[k] = probes[k].axis < 0 ? pressure(probes[k]) : height(probes[k]);
@@ -162,12 +162,12 @@ ComputeSphSurface::ComputeSphSurface(LAMMPS *lmp, int narg, char **arg) :
 
 void ComputeSphSurface::init()
 {
-  pair = Sph::require_pair(voice);
+  pair = PairSph::of(voice);
 }
 
 void ComputeSphSurface::compute_peratom()
 {
-  pair = Sph::prepared_pair(voice);
+  pair = PairSph::prepared(voice);
   invoked_peratom = update->ntimestep;
   if (!pair->moments(moments))
     voice.fail("there is no neighbour list yet of these atoms; use it in a run, or after 'run 0'");

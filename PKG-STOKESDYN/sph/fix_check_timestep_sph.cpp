@@ -43,7 +43,7 @@ void FixCheckTimestepSph::setup(int /*vflag*/)
 
 void FixCheckTimestepSph::end_of_step()
 {
-  pair = Sph::prepared_pair(voice);
+  pair = PairSph::prepared(voice);
   pair->largest_approach(largest);
   double mine = HUGE_VAL;
   tagint who = MAXTAGINT;

@@ -44,7 +44,7 @@ void FixNveSph::setup_pre_exchange()
  * not pushed by forces. */
 void FixNveSph::initial_integrate(int /*vflag*/)
 {
-  pair = Sph::prepared_pair(voice);
+  pair = PairSph::prepared(voice);
   double **x = atom->x, **v = atom->v, **f = atom->f, **vest = atom->vest;
   const double *du = pair->shift(), dt = update->dt;
   for (int i = 0; i < atom->nlocal; i++) {

@@ -1,20 +1,17 @@
 /* Internal fix: implicit friction of pair_style sph/artVisc/tensCorr is made when all that acts on the
- * particles is known, so this fix is always the last. */
+ * particles is known, so this fix is always the last: the pair style makes it anew before each run. */
 #ifndef SD_FIX_SPH_FRICTION_H
 #define SD_FIX_SPH_FRICTION_H
 
-#include "fix.h"
+#include "pair_sph_artvisc_tenscorr.h"
 
 namespace StokesDyn {
 
-class FixSphFriction : public LAMMPS_NS::Fix {
+class FixSphFriction : public SphFix {
  public:
-  static constexpr const char *STYLE = "SPH/FRICTION";
+  static constexpr const char *STYLE = PairSph::FRICTION_STYLE;
 
-  /* When LAMMPS prepares a run: made anew, behind all others, or none is left. */
-  static void provide(LAMMPS_NS::LAMMPS *lmp, bool wanted);
-
-  FixSphFriction(LAMMPS_NS::LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg) {}
+  using SphFix::SphFix;
   int setmask() override;
   void setup(int) override;
   void post_force(int) override;

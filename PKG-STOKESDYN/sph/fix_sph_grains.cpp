@@ -104,7 +104,7 @@ int FixSphGrains::setmask()
 
 void FixSphGrains::init()
 {
-  SphFix::init();
+  pair = PairSph::of(voice);
   if (pair->dimension() != 3)
     voice.fail("the kernel of pair_style sph/artVisc/tensCorr is that of two dimensions; write its "
                "name without 2d");

@@ -51,7 +51,7 @@ int FixSphOpening::setmask()
 /* New particles must find room in the box, and old ones must not be lost before they are deleted. */
 void FixSphOpening::init()
 {
-  SphFix::init();
+  pair = PairSph::of(voice);
   if (domain->triclinic) voice.fail("the box must not be triclinic");
   const double end = plane + side * width, edge = side > 0 ? domain->boxhi[axis] : domain->boxlo[axis];
   if (domain->boundary[axis][side > 0] != 1)

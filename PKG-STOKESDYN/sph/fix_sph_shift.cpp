@@ -1,39 +1,22 @@
 #include "fix_sph_shift.h"
 
-#include "keywords.h"
-#include "lammps_compat.h"
+#include "own_fix.h"
 
 #include "atom.h"
-#include "modify.h"
 
 #include <algorithm>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-static const char *const ID = "SPH_SHIFT_STATE";
 static constexpr int DU = 3, WHOLE = 1, REST = 9;    // columns
 
-void FixSphShift::take_away(LAMMPS *lmp)
+FixSphShift *FixSphShift::provide(const OwnFix &own, bool wanted, bool matrices)
 {
-  const Fix *fix = lmp->modify->nfix > 0 ? Compat::fix(lmp->modify, ID) : nullptr;
-  if (fix && strcmp(fix->style, STYLE) == 0) lmp->modify->delete_fix(ID);
-}
-
-FixSphShift *FixSphShift::provide(LAMMPS *lmp, bool wanted, bool matrices)
-{
-  const Fix *fix = Compat::fix(lmp->modify, ID);
-  if (fix && strcmp(fix->style, STYLE) != 0)
-    fail(lmp,
-         "Pair style sph/artVisc/tensCorr: the fix ID " + std::string(ID) +
-             " is taken; give that fix another ID");
-  if (!wanted || (fix && static_cast<const FixSphShift *>(fix)->matrices != matrices))
-    take_away(lmp);
-  if (!wanted) return nullptr;
-  if (!Compat::fix(lmp->modify, ID))
-    lmp->modify->add_fix(std::string(ID) + " all " + STYLE + (matrices ? " matrices" : ""));
-  return static_cast<FixSphShift *>(Compat::fix(lmp->modify, ID));
+  auto *fix = static_cast<FixSphShift *>(own.find());
+  if (wanted && fix && fix->matrices == matrices) return fix;
+  own.take_away();
+  return wanted ? static_cast<FixSphShift *>(own.make(matrices ? "matrices" : "")) : nullptr;
 }
 
 FixSphShift::FixSphShift(LAMMPS *lmp, int narg, char **arg) :

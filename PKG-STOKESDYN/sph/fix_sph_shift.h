@@ -8,15 +8,14 @@
 
 namespace StokesDyn {
 
+class OwnFix;
+
 class FixSphShift : public RowsFix {
  public:
   static constexpr const char *STYLE = "SPH/SHIFT";
 
-  /* That of this LAMMPS, made anew unless it is of this kind; wanted false: nullptr, and none is
-   * left. */
-  static FixSphShift *provide(LAMMPS_NS::LAMMPS *lmp, bool wanted, bool matrices);
-  /* For a destructor: none is left, and a fix of the user's with its ID stays. */
-  static void take_away(LAMMPS_NS::LAMMPS *lmp);
+  /* The pair style's, made anew unless it is of this kind; wanted false: nullptr, and none is left. */
+  static FixSphShift *provide(const OwnFix &own, bool wanted, bool matrices);
 
   FixSphShift(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override { return 0; }

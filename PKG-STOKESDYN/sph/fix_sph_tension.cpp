@@ -71,7 +71,7 @@ int FixSphTension::setmask()
 
 void FixSphTension::init()
 {
-  SphFix::init();
+  pair = PairSph::of(voice);
   is_set_up = false;
   if (fixes_of(lmp, STYLE).size() > 1)
     voice.fail("more than one: there is one fluid, with one surface tension");

@@ -117,7 +117,7 @@ FixWallRegionSph::FixWallRegionSph(LAMMPS *lmp, int narg, char **arg) :
 
 void FixWallRegionSph::init()
 {
-  pair = Sph::require_pair(voice);
+  pair = PairSph::of(voice);
   region = Compat::region(domain, region_id);
   if (!region) voice.fail("region '" + region_id + "' does not exist");
 }

@@ -16,7 +16,7 @@ namespace StokesDyn {
 
 static bool lets_sound_grow(const Guest &guest, std::string &says)
 {
-  const auto *pair = static_cast<const PairSph *>(guest.lmp->force->pair_match(PairSph::STYLE, 1));
+  const auto *pair = static_cast<const PairSph *>(guest.lmp->force->pair_match(Sph::PAIR_STYLE, 1));
   const double limit = pair->growth_limit(guest.fix->groupbit);
   says = text(limit);
   return guest.lmp->update->dt > limit * (1.0 + 1e-9);

@@ -1,6 +1,5 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
-#include "fix_sph_friction.h"
 #include "fix_sph_settings.h"
 #include "fix_sph_shift.h"
 #include "fixes.h"
@@ -29,6 +28,18 @@ const char *const PairSph::PARAMETER[NPARAMETERS] = {"h",    "c",      "alpha",
                                                        "beta", "deltap", "mu", "tau",
                                                        "n",    "mumax",  "lambda"};
 
+PairSph *PairSph::of(const Voice &voice)
+{
+  return static_cast<PairSph *>(Sph::require_pair(voice));
+}
+
+PairSph *PairSph::prepared(const Voice &voice)
+{
+  PairSph *pair = of(voice);
+  pair->require_prepared();
+  return pair;
+}
+
 bool PairSph::may_vanish(int parameter)
 {
   return parameter == ALPHA || parameter == BETA || parameter == TAU;
@@ -38,7 +49,9 @@ bool PairSph::may_vanish(int parameter)
  * scheme have to fit, and the virial is summed pair by pair, as shift and correction put no force on
  * ghosts. */
 PairSph::PairSph(LAMMPS *lmp) :
-    Pair(lmp), voice(lmp, "Pair style " + std::string(STYLE)), moved_box(lmp)
+    Pair(lmp), voice(lmp, "Pair style " + std::string(STYLE)),
+    shift_fix(voice, "SPH_SHIFT_STATE", FixSphShift::STYLE), friction_fix(voice, "SPH_FRICTION", FRICTION_STYLE),
+    moved_box(lmp)
 {
   single_enable = 1;
   respa_enable = 0;
@@ -51,8 +64,8 @@ PairSph::PairSph(LAMMPS *lmp) :
 PairSph::~PairSph()
 {
   if (asked_for_velocities) comm->ghost_velocity = 0;    // as it was
-  FixSphShift::take_away(lmp);
-  FixSphFriction::provide(lmp, false);
+  shift_fix.take_away();
+  friction_fix.take_away();
   if (!allocated) return;
   memory->destroy(setflag);
   memory->destroy(cutsq);

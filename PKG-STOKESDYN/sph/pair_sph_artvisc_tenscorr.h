@@ -7,6 +7,7 @@
 #include "atom.h"
 #include "moved_box.h"
 #include "neighbours.h"
+#include "own_fix.h"
 #include "pair.h"
 #include "sd_sph_rheology.h"
 #include "sph.h"
@@ -32,7 +33,13 @@ class FixWallAdamiSph;
 
 class PairSph : public LAMMPS_NS::Pair {
  public:
-  static constexpr const char *STYLE = "sph/artVisc/tensCorr";
+  static constexpr const char *STYLE = Sph::PAIR_STYLE;
+  /* of the fix that calls rub_implicitly(), fix_sph_friction.h */
+  static constexpr const char *FRICTION_STYLE = "SPH/FRICTION";
+
+  /* That of the scene; fails without one. The same, as a run has prepared it: require_prepared() */
+  static PairSph *of(const Voice &voice);
+  static PairSph *prepared(const Voice &voice);
 
   PairSph(LAMMPS_NS::LAMMPS *);
   ~PairSph() override;
@@ -129,6 +136,7 @@ class PairSph : public LAMMPS_NS::Pair {
   enum Parameter { H, C, ALPHA, BETA, DELTAP, MU, TAU, N, MU_MAX, LAMBDA, NPARAMETERS };
   static const char *const PARAMETER[NPARAMETERS];
   const Voice voice;
+  const OwnFix shift_fix, friction_fix;
 
   // settings
   std::vector<std::string> args;    // of pair_style, for restart files

@@ -2,7 +2,6 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix_nve_sph.h"
-#include "fix_sph_friction.h"
 #include "fix_sph_grains.h"
 #include "fix_sph_settings.h"
 #include "compute_sph_energy.h"
@@ -186,8 +185,9 @@ void PairSph::choose_scheme()
   if (implicit && grains)
     grains->voice.fail("does not go with keyword implicit of pair_style sph/artVisc/tensCorr");
   full = corrects || (shifts && !volume && !planes && background() > 0.0);
-  FixSphFriction::provide(lmp, implicit);
-  state = FixSphShift::provide(lmp, shifts, corrects || pliant);
+  friction_fix.take_away();
+  if (implicit) friction_fix.make();
+  state = FixSphShift::provide(shift_fix, shifts, corrects || pliant);
   shared = sd_sph_level_of(&model) == SD_SPH_RATE;
 }
 

@@ -1,7 +1,6 @@
 #include "sph.h"
 
 #include "lammps_compat.h"
-#include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
 
 #include "atom.h"
@@ -29,19 +28,11 @@ namespace Sph {
                  "their own; use units lj, si, cgs, micro or nano");
   }
 
-  PairSph *require_pair(const Voice &voice)
+  Pair *require_pair(const Voice &voice)
   {
-    Pair *found = voice.lmp->force->pair ? voice.lmp->force->pair_match(PairSph::STYLE, 1)
-                                         : nullptr;
-    if (!found) voice.fail("there is no pair_style " + std::string(PairSph::STYLE));
-    return static_cast<PairSph *>(found);
-  }
-
-  PairSph *prepared_pair(const Voice &voice)
-  {
-    PairSph *pair = require_pair(voice);
-    pair->require_prepared();
-    return pair;
+    Pair *found = voice.lmp->force->pair ? voice.lmp->force->pair_match(PAIR_STYLE, 1) : nullptr;
+    if (!found) voice.fail("there is no pair_style " + std::string(PAIR_STYLE));
+    return found;
   }
 
   std::vector<Fix *> integrators(LAMMPS *lmp)
@@ -80,7 +71,7 @@ SphFix::SphFix(LAMMPS *lmp, int narg, char **arg) : RowsFix(lmp, narg, arg)
 
 void SphFix::init()
 {
-  pair = Sph::require_pair(voice);
+  Sph::require_pair(voice);
 }
 
 void SphFix::forward(double *array, int columns)

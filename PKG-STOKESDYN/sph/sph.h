@@ -8,6 +8,10 @@
 #include <new>
 #include <vector>
 
+namespace LAMMPS_NS {
+class Pair;
+}
+
 namespace StokesDyn {
 
 class PairSph;
@@ -34,11 +38,10 @@ namespace Sph {
    * mass / length^3. */
   void require_scene(const Voice &voice);
 
-  /* The pair style of the scene; fails without one. */
-  PairSph *require_pair(const Voice &voice);
+  constexpr const char *PAIR_STYLE = "sph/artVisc/tensCorr";
 
-  /* The same, as a run has prepared it (require_prepared of the pair style). */
-  PairSph *prepared_pair(const Voice &voice);
+  /* The pair style of the scene, a PairSph; fails without one. */
+  LAMMPS_NS::Pair *require_pair(const Voice &voice);
 
   /* Those that move particles by forces: all that integrate in time but fix move and rigid
    * bodies. */
@@ -68,6 +71,7 @@ class SphFix : public RowsFix {
   void unpack_reverse_comm(int, int *, double *) override;
 
  protected:
+  /* of a fix that asks it something: PairSph::of, prepared */
   PairSph *pair = nullptr;
 
   /* array [columns] for each atom: those of owned atoms to their ghosts; sums of ghosts to their owners.

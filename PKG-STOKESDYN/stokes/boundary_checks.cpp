@@ -20,32 +20,6 @@ namespace StokesDyn {
 
 static const char AXES[] = "xyz";
 
-// --- when keywords are read ----------------------------------------------------------------------
-
-void settle_walls(const Keywords &in, StokesSettings &s)
-{
-  const Boundary &boundary = s.scene.boundary;
-  in.require(!in.given("flow") || boundary.walls == 2,
-             "keyword flow requires two walls (wall zlo ... zhi ...): it says what drives the fluid "
-             "between them");
-  if (!boundary.walled()) return;
-  const bool torques = s.scene.rotation && !s.shells.on();
-  in.require(s.scene.tensor != SD_TENSOR_OSEEN,
-             "keyword wall is not available with tensor oseen: use tensor rpy");
-  in.require(s.scene.far_field != Scene::Settings::EWALD || !torques,
-             "keyword wall: far_field ewald has no images of torques in a wall: use multiblob 12 in "
-             "place of rotation yes, or far_field auto, which takes all pairs");
-  in.require(s.precondition != Preconditioner::WAVES,
-             "keyword wall: precondition waves is for periodic boxes: use precondition auto");
-  in.require(!s.rigid.apart(),
-             "keyword wall: with clumps_only yes rigid clumps have a resistance that is computed "
-             "once, without the wall: use cut_off_distance inf and multiblob 12");
-  in.require(s.rigid.shell == 1,
-             "keyword wall: a shell is computed once, without the wall: use multiblob 12 in its "
-             "place");
-  if (torques) s.scene.far_field = Scene::Settings::DIRECT;
-}
-
 // --- before a run --------------------------------------------------------------------------------
 
 static double side_of_box(const Domain *domain, const sd_wall &wall)

@@ -1,4 +1,4 @@
-/* What a boundary refuses: when its keywords are read, before a run, and in every step. */
+/* What a boundary refuses, before a run and in every step; what its keywords do not go with: settings. */
 #ifndef SD_BOUNDARY_CHECKS_H
 #define SD_BOUNDARY_CHECKS_H
 
@@ -9,14 +9,9 @@ namespace StokesDyn {
 
 class Ambient;
 struct Boundary;
-class Keywords;
 class Scene;
 class Voice;
 struct StokesSettings;
-
-/* When all words are read: an error for what does not go with a wall, or with flow; torques of spheres of
- * one point, for whose images there is no Ewald sum, are summed over all pairs. */
-void settle_walls(const Keywords &in, StokesSettings &settings);
 
 /* Before a run: which kind of boundary it is, and where walls at the side of the box are now.
  * Errors: directions that are periodic or not where they must not be, a side that moves or

@@ -6,6 +6,7 @@
 #include "fixes.h"
 #include "keywords.h"
 #include "lammps_compat.h"
+#include "own_fix.h"
 #include "checks.h"
 
 #include "sd_linear.h"
@@ -139,8 +140,9 @@ bool FixStokesDynamicsOverdamped::prepare(LAMMPS *lmp)
 {
   using Last = FixStokesDynamicsLast;
   const bool there = !fixes_of(lmp, STYLE).empty();
-  if (Compat::fix(lmp->modify, Last::ID)) lmp->modify->delete_fix(Last::ID);
-  if (there) lmp->modify->add_fix(std::string(Last::ID) + " all " + Last::STYLE);
+  const OwnFix last(Voice(lmp, std::string("Fix ") + STYLE), Last::ID, Last::STYLE);
+  last.take_away();
+  if (there) last.make();
   return there;
 }
 

@@ -1,12 +1,10 @@
 #include "fix_stokes_dynamics_state.h"
 
-#include "keywords.h"
-#include "lammps_compat.h"
+#include "own_fix.h"
 #include "ranks.h"
 
 #include "atom.h"
 #include "domain.h"
-#include "modify.h"
 #include "update.h"
 
 #include <cstdlib>
@@ -16,14 +14,19 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
+static OwnFix memory_of(LAMMPS *lmp)
+{
+  return {Voice(lmp, "Pair style stokes_dynamics"), FixStokesDynamicsState::ID, FixStokesDynamicsState::STYLE};
+}
+
 FixStokesDynamicsState *FixStokesDynamicsState::find(LAMMPS *lmp)
 {
-  Fix *fix = Compat::fix(lmp->modify, ID);
-  if (fix && strcmp(fix->style, STYLE) != 0)
-    fail(lmp, "Pair style stokes_dynamics: the fix ID " + std::string(ID) +
-                  " is taken by a fix of style " + fix->style +
-                  ", and the pair style needs it for itself; give that fix another ID");
-  return static_cast<FixStokesDynamicsState *>(fix);
+  return static_cast<FixStokesDynamicsState *>(memory_of(lmp).find());
+}
+
+void FixStokesDynamicsState::take_away(LAMMPS *lmp)
+{
+  memory_of(lmp).take_away();
 }
 
 FixStokesDynamicsState *FixStokesDynamicsState::provide(LAMMPS *lmp, bool rotation, bool history,
@@ -33,10 +36,9 @@ FixStokesDynamicsState *FixStokesDynamicsState::provide(LAMMPS *lmp, bool rotati
   if (fix && fix->rotation == rotation && fix->history == history && fix->points == points &&
       fix->most == most)
     return fix;
-  if (fix) lmp->modify->delete_fix(ID);
-  lmp->modify->add_fix(std::string(ID) + " all " + STYLE + " " + std::to_string(rotation) + " " +
-                       std::to_string(history) + " " + std::to_string(points) + " " + std::to_string(most));
-  return find(lmp);
+  const std::string words = std::to_string(rotation) + " " + std::to_string(history) + " " +
+      std::to_string(points) + " " + std::to_string(most);
+  return static_cast<FixStokesDynamicsState *>(memory_of(lmp).make(words));
 }
 
 static int number(int narg, char **arg, int k)

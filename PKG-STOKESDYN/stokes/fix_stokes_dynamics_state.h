@@ -29,6 +29,8 @@ class FixStokesDynamicsState : public RowsFix {
   /* The same, made anew unless it is of this kind. */
   static FixStokesDynamicsState *provide(LAMMPS_NS::LAMMPS *lmp, bool rotation, bool history,
                                          int points, int most);
+  /* If it is there; in destructors */
+  static void take_away(LAMMPS_NS::LAMMPS *lmp);
 
   FixStokesDynamicsState(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override { return 0; }

@@ -5,7 +5,6 @@
 #include "fix_stokes_dynamics_overdamped.h"
 #include "fixes.h"
 #include "keywords.h"
-#include "lammps_compat.h"
 #include "restart.h"
 
 #include "atom.h"
@@ -13,7 +12,6 @@
 #include "domain.h"
 #include "force.h"
 #include "memory.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 #include "utils.h"
@@ -41,8 +39,7 @@ PairStokesDynamics::PairStokesDynamics(LAMMPS *lmp) : Pair(lmp), hydro(lmp), sor
 
 PairStokesDynamics::~PairStokesDynamics()
 {
-  Fix *memory_fix = Compat::fix(modify, State::ID);
-  if (memory_fix && strcmp(memory_fix->style, State::STYLE) == 0) modify->delete_fix(State::ID);
+  State::take_away(lmp);
   if (allocated) {
     memory->destroy(setflag);
     memory->destroy(cutsq);

@@ -1,6 +1,5 @@
 #include "settings.h"
 
-#include "boundary_checks.h"
 #include "keywords.h"
 
 #include "sd_multiblob_half.h"
@@ -22,7 +21,7 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   if (!in.given("cut_off_distance")) scene.cutoff = INFINITY;
   rigid.clumps_only = scene.clumps_only;
   check(in);
-  settle_walls(in, *this);
+  settle_walls(in);
   if (!grid_file.empty()) {
     ambient.grid = FlowFile::read(Voice(lmp, COMMAND).of("keyword fluid_velocity"), grid_file);
     in.require(!ambient.grid_has_visc || ambient.grid->has_viscosity(),
@@ -247,6 +246,32 @@ void StokesSettings::check(const Keywords &in) const
   in.require(!in.given("shell") || rigid.on, "keyword shell requires rigid_clumps yes");
   in.require(!rigid.on || scene.tensor != SD_TENSOR_OSEEN,
              "keyword rigid_clumps is not available with tensor oseen");
+}
+
+/* What does not go with a wall, or with flow; torques of spheres of one point, for whose images there is no Ewald
+ * sum, are summed over all pairs. */
+void StokesSettings::settle_walls(const Keywords &in)
+{
+  const Boundary &boundary = scene.boundary;
+  in.require(!in.given("flow") || boundary.walls == 2,
+             "keyword flow requires two walls (wall zlo ... zhi ...): it says what drives the fluid "
+             "between them");
+  if (!boundary.walled()) return;
+  const bool torques = scene.rotation && !shells.on();
+  in.require(scene.tensor != SD_TENSOR_OSEEN,
+             "keyword wall is not available with tensor oseen: use tensor rpy");
+  in.require(scene.far_field != Scene::Settings::EWALD || !torques,
+             "keyword wall: far_field ewald has no images of torques in a wall: use multiblob 12 in "
+             "place of rotation yes, or far_field auto, which takes all pairs");
+  in.require(precondition != Preconditioner::WAVES,
+             "keyword wall: precondition waves is for periodic boxes: use precondition auto");
+  in.require(!rigid.apart(),
+             "keyword wall: with clumps_only yes rigid clumps have a resistance that is computed "
+             "once, without the wall: use cut_off_distance inf and multiblob 12");
+  in.require(rigid.shell == 1,
+             "keyword wall: a shell is computed once, without the wall: use multiblob 12 in its "
+             "place");
+  if (torques) scene.far_field = Scene::Settings::DIRECT;
 }
 
 }    // namespace StokesDyn

@@ -96,3 +96,15 @@ def test_no_files_of_the_core_call_or_include_each_other_in_a_circle():
     calls, includes = sources_below()
     assert "sd_tie.c" in calls["sd_bodies.c"] and "sd_ewald_box.h" in includes["sd_ewald_chosen.h"]
     assert circles(calls) == {} and circles(includes) == {}
+
+
+def test_no_files_of_the_glue_include_each_other_in_a_circle():
+    """A header and the source of its name count as one; further sources of a class include both sides, and nobody includes them."""
+    texts = {}
+    for room in ("common", "stokes", "sph", "vans"):
+        for path in (TOP / "PKG-STOKESDYN" / room).iterdir():
+            if path.suffix in (".h", ".cpp"):
+                texts[path.stem] = texts.get(path.stem, "") + path.read_text()
+    includes = {name: set(re.findall(r'#include "([^"]+)\.h"', text)) & set(texts) for name, text in texts.items()}
+    assert "pair_sph_artvisc_tenscorr" in includes["fix_sph_friction"] and "scene" in includes["solve"]
+    assert circles(includes) == {}

@@ -63,6 +63,13 @@ def test_a_fix_of_the_user_with_the_id_of_the_memory_is_a_clean_error(tmp_path, 
     assert ended.code == 1 and "the fix ID STOKES_DYNAMICS_STATE is taken by a fix of style nve" in " ".join(ended.text.split())
 
 
+def test_a_fix_of_the_user_with_the_id_of_the_last_fix_stays_and_is_a_clean_error(simulation):
+    sim = simulation(four(), STYLE, box=[(-9, 9)] * 3)
+    sim.commands("fix STOKES_DYNAMICS_LAST all enforce2d\nfix go all stokes_dynamics/overdamped")
+    with pytest.raises(LammpsError, match="the fix ID STOKES_DYNAMICS_LAST is taken by a fix of style enforce2d"):
+        sim.run()
+
+
 def test_a_fix_of_the_user_with_that_id_after_a_run(tmp_path):
     lines = input_lines(four(), STYLE, tmp_path / "data", box=[(-9, 9)] * 3)
     lines += ["run 1", "unfix STOKES_DYNAMICS_STATE", "fix STOKES_DYNAMICS_STATE all nve", "run 1 pre no"]
