@@ -14,8 +14,8 @@ void sd_field_free(sd_field *f)
   sd_ewald_waves_free(&f->waves);
   free(f->source);
   free(f->scratch);
-  free(f->cells.first);
-  free(f->cells.order);
+  free(f->centre);
+  sd_ewald_cells_free(&f->cells);
   memset(f, 0, sizeof(*f));
 }
 
@@ -142,6 +142,12 @@ sd_status sd_field_plan(sd_field *f, sd_field_sum how, const sd_ewald_box *box, 
 
 /* --- sources, as the kernels read them --- */
 
+static int sort_sources(sd_field *f, const sd_field_sources *s)
+{
+  return sd_reserve(&f->centre, sizeof(double), 3 * (size_t) s->n + SD_FULL, &f->centre_room) &&
+      sd_ewald_cells_sort(&f->cells, s->x, NULL, s->n, 2.0 * f->how.ewald.range, f->centre) == SD_OK;
+}
+
 /* In the order that is given */
 static int list_sources(sd_field *f, const sd_field_sources *s, const int *order)
 {
@@ -236,7 +242,7 @@ static sd_status field_convolve(sd_field *f, const sd_field_sources *s, const sd
   double *x = f->scratch, *a = x + 3 * n, *w = a + n, *F = w + n, *u = F + m * n;
   const sd_spheres ours = {x, a, w};
   for (size_t i = 0; i < n && status == SD_OK; i++) {
-    const size_t j = (size_t) f->cells.order[i];
+    const size_t j = (size_t) f->cells.place[i];
     which[i] = (int) i;
     w[i] = 1.0;
     a[i] = s->a[j];
@@ -282,17 +288,14 @@ sd_status sd_field_add_split(sd_field *f, const sd_field_sources *ours,
                              const sd_world *world, double *u)
 {
   const struct sd_field_kernels *kernels = SD_KERNELS_OF(sd_field, plain, sd_isa_of(SD_ISA_BEST));
-  const double range = f->how.ewald.range;
   double mean[3];
   sd_status status = field_make_tables(f, world);
-  if (!sd_field_sort(&f->cells, ours->x, 3, ours->n, range)) status = SD_ENOMEMORY;
+  if (!sort_sources(f, ours)) status = SD_ENOMEMORY;
   status = sd_world_agree(world, status);
   if (status == SD_OK) status = field_mean_of(f, ours, world, mean);
   if (status == SD_OK) status = field_convolve(f, ours, world);
   if (status != SD_OK) return status;
-  if (!sd_field_sort(&f->cells, near->x, 3, near->n, range) ||
-      !list_sources(f, near, f->cells.order))
-    return SD_ENOMEMORY;
+  if (!sort_sources(f, near) || !list_sources(f, near, f->cells.place)) return SD_ENOMEMORY;
   sd_field_part p = part_of(f, near->n, g, u);
   field_range_of(f, &p);
   memcpy(p.mean, mean, sizeof(mean));

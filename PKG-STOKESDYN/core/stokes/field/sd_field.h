@@ -16,6 +16,7 @@
 #define SD_FLOW_FIELD_H
 
 #include "sd_ewald.h"
+#include "sd_ewald_cells.h"
 #include "sd_ewald_waves.h"
 #include "sd_status.h"
 #include "sd_world.h"
@@ -61,13 +62,6 @@ void sd_field_measure(const sd_field_sources *s, sd_field_cloud *out);
 /* AUTO: in an open box all pairs or a split sum, whichever costs less, counted */
 typedef enum { SD_FIELD_AUTO, SD_FIELD_DIRECT, SD_FIELD_SPLIT } sd_field_sum;
 
-/* Places in cells: cell k of n [3] has order [first [k]] ... order [first [k + 1] - 1] */
-typedef struct {
-  double lo[3], inverse;
-  int n[3], *first, *order;
-  size_t first_room, order_room;
-} sd_field_cells;
-
 /* How a field is summed */
 typedef struct {
   int split, width;
@@ -89,7 +83,10 @@ typedef struct {
   /* sources as the kernels read them */
   double *source, *scratch;
   size_t source_room, scratch_room;
-  sd_field_cells cells;
+  /* sources in order of cells of a range a side, and what these need */
+  sd_ewald_cells cells;
+  double *centre;
+  size_t centre_room;
 } sd_field;
 
 /* The sum for these sources and this grid, before its parts are added: the same on every rank.

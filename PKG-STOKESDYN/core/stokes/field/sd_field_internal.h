@@ -68,11 +68,7 @@ struct sd_field_kernels {
 
 SD_KERNEL_TABLES(struct sd_field_kernels, sd_field);
 
-/* Places x [stride i], i < n, in an order of cells, along z fastest. side: of the cells, at least;
- * 0: there is one cell. 1, or 0: out of memory. */
-int sd_field_sort(sd_field_cells *c, const double *x, long stride, int n, double side);
-
-/* u of the part += the near part. SD_OK or SD_ENOMEMORY. */
+/* u of the part, whose sources are those of f->cells in their order, += the near part. SD_OK or SD_ENOMEMORY. */
 sd_status sd_field_near(sd_field *f, const sd_field_part *p,
                         const struct sd_field_kernels *kernels);
 

@@ -17,13 +17,18 @@ void sd_ewald_cells_free(sd_ewald_cells *c)
 
 /* --- rows in order of cells --- */
 
+static int ec_takes_part(const double *there, int i)
+{
+  return !there || there[i] > 0.0;
+}
+
 /* Half the reach a side, or more where the places are so far apart that most cells would be empty. */
 static void cut_into_cells(sd_ewald_cells *c, const double *x, const double *there, int count)
 {
   double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
   int many = 0;
   for (int i = 0; i < count; i++) {
-    if (!(there[i] > 0.0)) continue;
+    if (!ec_takes_part(there, i)) continue;
     many++;
     for (int d = 0; d < 3; d++) {
       const double at = x[3 * (long) i + d];
@@ -72,10 +77,10 @@ sd_status sd_ewald_cells_sort(sd_ewald_cells *c, const double *x, const double *
   int *first = c->first;
   memset(first, 0, sizeof(int) * ((size_t) all + 2));
   for (int i = 0; i < count; i++)
-    if (there[i] > 0.0) first[ec_cell_of(c, x + 3 * (long) i) + 2]++;
+    if (ec_takes_part(there, i)) first[ec_cell_of(c, x + 3 * (long) i) + 2]++;
   for (int k = 0; k < all; k++) first[k + 2] += first[k + 1];
   for (int i = 0; i < count; i++)
-    if (there[i] > 0.0) c->place[first[ec_cell_of(c, x + 3 * (long) i) + 1]++] = i;
+    if (ec_takes_part(there, i)) c->place[first[ec_cell_of(c, x + 3 * (long) i) + 1]++] = i;
   c->rows = first[all];
   for (long k = 0; k < c->rows; k++)
     for (long d = 0; d < 3; d++) centre[d * c->rows + k] = x[3 * (long) c->place[k] + d];

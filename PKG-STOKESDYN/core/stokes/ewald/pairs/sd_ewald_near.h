@@ -4,6 +4,7 @@
 
 #include "sd_ewald_cells.h"
 #include "sd_ewald_internal.h"
+#include "sd_ewald_internal.h"
 #include "sd_status.h"
 #include "sd_world.h"
 
