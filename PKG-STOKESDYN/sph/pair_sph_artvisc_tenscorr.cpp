@@ -12,6 +12,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "force.h"
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -49,7 +50,7 @@ bool PairSph::may_vanish(int parameter)
  * scheme have to fit, and the virial is summed pair by pair, as shift and correction put no force on
  * ghosts. */
 PairSph::PairSph(LAMMPS *lmp) :
-    Pair(lmp), voice(lmp, "Pair style " + std::string(STYLE)),
+    GhostRows(lmp), voice(lmp, "Pair style " + std::string(STYLE)),
     shift_fix(voice, "SPH_SHIFT_STATE", FixSphShift::STYLE), friction_fix(voice, "SPH_FRICTION", FRICTION_STYLE),
     moved_box(lmp)
 {
@@ -321,6 +322,11 @@ double PairSph::viscosity(int i) const
 bool PairSph::has_sound_speed(int itype) const
 {
   return !std::isnan(table[C][itype][itype]);
+}
+
+void PairSph::reverse(double *rows, int width, bool keep_largest)
+{
+  if (shared && force->newton_pair) GhostRows::reverse(rows, width, keep_largest);
 }
 
 void *PairSph::extract(const char *name, int &dim)

@@ -31,7 +31,7 @@ class FixSphPressure;
 class FixSphShift;
 class FixWallAdamiSph;
 
-class PairSph : public LAMMPS_NS::Pair {
+class PairSph : public GhostRows<LAMMPS_NS::Pair> {
  public:
   static constexpr const char *STYLE = Sph::PAIR_STYLE;
   /* of the fix that calls rub_implicitly(), fix_sph_friction.h */
@@ -52,10 +52,6 @@ class PairSph : public LAMMPS_NS::Pair {
   double single(int, int, int, int, double, double, double, double &) override;
   void *extract(const char *, int &) override;
   double memory_usage() override;
-  int pack_forward_comm(int, int *, double *, int, int *) override;
-  void unpack_forward_comm(int, int, double *) override;
-  int pack_reverse_comm(int, int, double *) override;
-  void unpack_reverse_comm(int, int *, double *) override;
   void write_restart(FILE *) override;
   void read_restart(FILE *) override;
   void write_restart_settings(FILE *) override;
@@ -268,13 +264,8 @@ class PairSph : public LAMMPS_NS::Pair {
   void check_list();
   [[noreturn]] void coincident();
   void tally();
-
-  // communication of one array at a time: rows; sums, or the largest
-  double *comm_array = nullptr;
-  int comm_columns = 0;
-  bool comm_largest = false;
-  void forward(double *array, int columns);
-  void reverse(double *array, int columns, bool largest = false);
+  /* nothing where ghosts got nothing */
+  void reverse(double *rows, int width, bool keep_largest = false);
 };
 
 }    // namespace StokesDyn

@@ -1,6 +1,5 @@
 #include "sph.h"
 
-#include "lammps_compat.h"
 #include "ranks.h"
 
 #include "atom.h"
@@ -64,7 +63,7 @@ namespace Sph {
 
 // --- fixes ---------------------------------------------------------------------------------------
 
-SphFix::SphFix(LAMMPS *lmp, int narg, char **arg) : RowsFix(lmp, narg, arg)
+SphFix::SphFix(LAMMPS *lmp, int narg, char **arg) : GhostRows(lmp, narg, arg)
 {
   Sph::require_scene(voice);
 }
@@ -72,45 +71,6 @@ SphFix::SphFix(LAMMPS *lmp, int narg, char **arg) : RowsFix(lmp, narg, arg)
 void SphFix::init()
 {
   Sph::require_pair(voice);
-}
-
-void SphFix::forward(double *array, int columns)
-{
-  comm_array = array;
-  comm_columns = columns;
-  Compat::forward_comm(comm, this);
-}
-
-void SphFix::reverse(double *array, int columns)
-{
-  comm_array = array;
-  comm_columns = columns;
-  Compat::reverse_comm(comm, this);
-}
-
-int SphFix::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/, int * /*pbc*/)
-{
-  for (int k = 0; k < n; k++)
-    buf = std::copy_n(comm_array + (size_t) list[k] * comm_columns, comm_columns, buf);
-  return n * comm_columns;
-}
-
-void SphFix::unpack_forward_comm(int n, int first, double *buf)
-{
-  std::copy_n(buf, (size_t) n * comm_columns, comm_array + (size_t) first * comm_columns);
-}
-
-int SphFix::pack_reverse_comm(int n, int first, double *buf)
-{
-  std::copy_n(comm_array + (size_t) first * comm_columns, (size_t) n * comm_columns, buf);
-  return n * comm_columns;
-}
-
-void SphFix::unpack_reverse_comm(int n, int *list, double *buf)
-{
-  for (int k = 0; k < n; k++)
-    for (int c = 0; c < comm_columns; c++)
-      comm_array[(size_t) list[k] * comm_columns + c] += *buf++;
 }
 
 void SphOutputFix::begin()

@@ -3,6 +3,7 @@
 #define SD_SPH_H
 
 #include "field.h"
+#include "ghost_rows.h"
 #include "rows_fix.h"
 
 #include <new>
@@ -60,28 +61,15 @@ namespace Sph {
 // --- fixes ---------------------------------------------------------------------------------------
 
 /* Knows the fluid: the scene must have its units and atom style, and at a run the pair style. */
-class SphFix : public RowsFix {
+class SphFix : public GhostRows<RowsFix> {
  public:
   SphFix(LAMMPS_NS::LAMMPS *, int, char **);
   int setmask() override { return 0; }
   void init() override;
-  int pack_forward_comm(int, int *, double *, int, int *) override;
-  void unpack_forward_comm(int, int, double *) override;
-  int pack_reverse_comm(int, int, double *) override;
-  void unpack_reverse_comm(int, int *, double *) override;
 
  protected:
   /* of a fix that asks it something: PairSph::of, prepared */
   PairSph *pair = nullptr;
-
-  /* array [columns] for each atom: those of owned atoms to their ghosts; sums of ghosts to their owners.
-   * At most comm_forward and comm_reverse columns, which the constructor of a fix says. */
-  void forward(double *array, int columns);
-  void reverse(double *array, int columns);
-
- private:
-  double *comm_array = nullptr;
-  int comm_columns = 0;
 };
 
 /* A fix whose per-atom vector is made in the pair style: between runs it has the numbers of the
