@@ -16,8 +16,9 @@ using namespace LAMMPS_NS;
 namespace StokesDyn {
 
 BodyScene::BodyScene(LAMMPS *lmp, Scene &scene, const Ambient &ambient, RigidClumps &rigid,
-                     const ClumpPoses &poses, const Given &given) :
-    Pointers(lmp), scene(scene), ambient(ambient), rigid(rigid), poses(poses), given(given)
+                     const ClumpPoses &poses, const Given &given, Lubrication &lubrication) :
+    Pointers(lmp), scene(scene), ambient(ambient), rigid(rigid), poses(poses), given(given),
+    lubrication(lubrication)
 {
 }
 
@@ -51,13 +52,15 @@ void BodyScene::place(int numbers)
   scene.drift(flow.data(), width, 1.0);
 }
 
-void BodyScene::assemble()
+void BodyScene::assemble(Films films)
 {
+  if (films != STANDING_FILMS) film_arm.clear();
   if (scene.shells) place_points();
   arrange();
   open = shaped;
   stand_at_wall();
   put_together();
+  if (films != NO_FILMS) tie_films(films);
   find_known();
   if (given.velocities) return pass(flow);
   if (scene.shells)
@@ -176,8 +179,20 @@ sd_bodies BodyScene::undrawn()
   return rest;
 }
 
-void BodyScene::stand_films()
+void BodyScene::tie_films(Films films)
 {
+  if (!lubrication.settings.on) return;
+  if (films != STANDING_FILMS) lubrication.place(scene, &ambient, films == NOISY_FILMS);
+  tie.L = lubrication.matrix();
+  bodies.tie = &tie;
+}
+
+void BodyScene::stand_films(const std::vector<int> &who)
+{
+  if (!lubrication.settings.on) return;
+  scene.stand(who, ambient);
+  scene.turn_shells();
+  lubrication.place(scene, &ambient);
   film_arm.assign(3 * (size_t) scene.size() + 3, 0.0);
   for (const ClumpPoses::Clump &clump : poses.clumps()) {
     const ClumpShape &is = poses.shape(clump);

@@ -3,7 +3,7 @@
  * (keyword multiblob); near a wall each body is one with its image. Nobody else asks which.
  *
  *   place()      by spheres: what is given of them, and the fluid there
- *   assemble()   and as bodies
+ *   assemble()   and as bodies, with the films between them
  *   pass()       where velocities are given: the same bodies in another slip */
 #ifndef SD_BODY_SCENE_H
 #define SD_BODY_SCENE_H
@@ -12,11 +12,13 @@
 #include "body_noise.h"
 #include "callback.h"
 #include "clump_poses.h"
+#include "lubrication.h"
 #include "pointers.h"
 #include "rigid_clumps.h"
 #include "scene.h"
 
 #include "sd_bodies.h"
+#include "sd_tie.h"
 
 #include <deque>
 #include <vector>
@@ -26,11 +28,14 @@ namespace StokesDyn {
 class BodyScene : protected LAMMPS_NS::Pointers {
  public:
   BodyScene(LAMMPS_NS::LAMMPS *lmp, Scene &, const Ambient &, RigidClumps &, const ClumpPoses &,
-            const Given &);
+            const Given &, Lubrication &);
 
   /* Vectors have that many numbers of a sphere. The scene has been updated, and the clumps found. */
   void place(int width);
-  void assemble();
+  /* Films: those where the spheres stand, in the fluid of this step; the same for random forces too; those that
+   * stand_films() has left, with the arms of then */
+  enum Films { NO_FILMS, FILMS, NOISY_FILMS, STANDING_FILMS };
+  void assemble(Films films = NO_FILMS);
   /* Everybody rests in a fluid that moves with this slip [width spheres]; strained: and varies around each
    * sphere as the ambient one does. The bodies have been assembled. */
   void pass(const std::vector<double> &slip, bool strained = true);
@@ -61,10 +66,14 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   /* The bodies with the part of their matrix that is not drawn at once, where the engine's divides
    * (sd_mobility.h). It stands as long as they do. */
   sd_bodies undrawn();
-  /* Arms of the spheres by the poses of now, where films stand; kept for the bodies that are assembled
-   * until begin_films() says that films stand with their points. */
-  void stand_films();
-  void begin_films() { film_arm.clear(); }
+  /* The films of these atoms where they stand now, before the points of the bodies go elsewhere */
+  void stand_films(const std::vector<int> &who);
+  /* Those that stand, in a fluid at rest; random forces of them (Lubrication::draw) */
+  void rest_films() { lubrication.place(scene, nullptr); }
+  sd_status draw_films(const sd_random_key &key, double *forces) const
+  {
+    return lubrication.draw(scene, key, forces);
+  }
   /* [3 spheres] from the centre of their body */
   const std::vector<double> &arms() const { return arm; }
   /* Those of clumps are the last ones */
@@ -78,6 +87,8 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   RigidClumps &rigid;
   const ClumpPoses &poses;
   const Given &given;
+  Lubrication &lubrication;
+  Owned<sd_tie, sd_tie_free> tie;
 
   /* for the core, by spheres, by points */
   std::vector<double> arm, film_arm, D;
@@ -97,6 +108,7 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   sd_faces faces = {};
   std::vector<char> whole_shells;
 
+  void tie_films(Films films);
   void arrange();
   void add_free(int row);
   void add(const ClumpPoses::Clump &clump);

@@ -12,20 +12,21 @@ namespace StokesDyn {
 
 using State = FixStokesDynamicsState;
 
-Guess::Guess(LAMMPS *lmp, Scene &scene, const Shells &shells, const StokesSettings &settings,
-             const Epochs &epochs) :
-    Pointers(lmp), scene(scene), shells(shells), settings(settings), epochs(epochs)
+Guess::Guess(LAMMPS *lmp, Scene &scene, const BodyScene &bodies, const Given &given, const Shells &shells,
+             const StokesSettings &settings) :
+    Pointers(lmp), scene(scene), bodies(bodies), given(given), shells(shells), settings(settings),
+    epochs(scene.since())
 {
 }
 
-bool Guess::recall(const BodyScene &bodies, const Given &given)
+bool Guess::recall()
 {
   const bool warm = given.velocities ? memory->history && memory->global.solutions > 0.0
                                      : settings.warm_start;
   if (shells.settings.on())
     l = recall_points(memory->global.line);
   else if (given.velocities && warm)
-    recall_forces(bodies);
+    recall_forces();
   else if (given.velocities)
     l.assign(width() * (scene.size() + 1), 0.0);
   else
@@ -37,11 +38,11 @@ bool Guess::recall(const BodyScene &bodies, const Given &given)
   return warm;
 }
 
-void Guess::keep(const BodyScene &bodies, const Given &given, const std::vector<double> &exerted)
+void Guess::keep(const std::vector<double> &exerted)
 {
   found.take(epochs.step);
   if (given.velocities)
-    keep_perturbation(bodies, exerted);
+    keep_perturbation(exerted);
   else
     keep_motions();
   if (shells.settings.on() && scene.anybody_sees())
@@ -58,7 +59,7 @@ void Guess::keep(const BodyScene &bodies, const Given &given, const std::vector<
 /* F = D (s + v') with the v' of the last solve, or on the line through the last two. Made from v'
  * and not from F, the guess has the slip of now: it is exact for spheres that nobody disturbs, at
  * any tolerance. */
-void Guess::recall_forces(const BodyScene &bodies)
+void Guess::recall_forces()
 {
   const size_t m = width();
   const bool line = memory->global.solutions > 1;
@@ -75,7 +76,7 @@ void Guess::recall_forces(const BodyScene &bodies)
 
 /* v' = D^-1 F - s of the solution, and what the next guess is made of. Spheres that see nobody have
  * none: not what the tolerance of a solve from zero has left of theirs either. */
-void Guess::keep_perturbation(const BodyScene &bodies, const std::vector<double> &exerted)
+void Guess::keep_perturbation(const std::vector<double> &exerted)
 {
   const size_t m = width();
   State::Global &global = memory->global;

@@ -23,7 +23,7 @@ namespace StokesDyn {
 
 class Guess : protected LAMMPS_NS::Pointers {
  public:
-  Guess(LAMMPS_NS::LAMMPS *lmp, Scene &, const Shells &, const StokesSettings &, const Epochs &);
+  Guess(LAMMPS_NS::LAMMPS *lmp, Scene &, const BodyScene &, const Given &, const Shells &, const StokesSettings &);
   /* that of the step: Hydrodynamics::begin */
   FixStokesDynamicsState *memory = nullptr;
 
@@ -32,9 +32,9 @@ class Guess : protected LAMMPS_NS::Pointers {
   std::vector<double> l, v;
 
   /* Before a solve: from the memory. Returns whether there is anything to begin from. */
-  bool recall(const BodyScene &bodies, const Given &given);
+  bool recall();
   /* After it: to the memory. exerted [width spheres]: forces of the spheres on the fluid */
-  void keep(const BodyScene &bodies, const Given &given, const std::vector<double> &exerted);
+  void keep(const std::vector<double> &exerted);
   /* A sphere turns with its clump by the rotation matrix R, and so does what the next solve begins
    * from. */
   void turn(int i, const double R[9]);
@@ -47,16 +47,18 @@ class Guess : protected LAMMPS_NS::Pointers {
 
  private:
   Scene &scene;
+  const BodyScene &bodies;
+  const Given &given;
   const Shells &shells;
   const StokesSettings &settings;
   const Epochs &epochs;
   Since found;
 
   size_t width() const { return settings.scene.rotation ? 6 : 3; }
-  void recall_forces(const BodyScene &bodies);
+  void recall_forces();
   void recall_motions();
   std::vector<double> recall_points(double line) const;
-  void keep_perturbation(const BodyScene &bodies, const std::vector<double> &exerted);
+  void keep_perturbation(const std::vector<double> &exerted);
   void keep_motions();
   void keep_points();
   void turn_points(std::vector<double> &l, bool back) const;

@@ -28,9 +28,9 @@ Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
     scene(voice, epochs, settings.scene), shells(voice, settings.shells),
     rigid(voice, scene.whole, epochs, settings.rigid),
     lubrication(voice, settings.lubrication, settings.shells),
-    clump_poses(lmp, scene, ambient, rigid, given), bodies(lmp, scene, ambient, rigid, clump_poses, given),
-    guess(lmp, scene, shells, settings, epochs),
-    solver(lmp, scene, bodies, lubrication, ambient), guard(voice)
+    clump_poses(lmp, scene, ambient, rigid, given),
+    bodies(lmp, scene, ambient, rigid, clump_poses, given, lubrication),
+    solver(lmp, scene, bodies, ambient, given, shells, settings), guard(voice)
 {
 }
 
@@ -86,7 +86,7 @@ void Hydrodynamics::check_prepared() const
 void Hydrodynamics::begin(Moment moment)
 {
   check_prepared();
-  guess.memory = memory = State::find(lmp);
+  solver.guess.memory = memory = State::find(lmp);
   if (!memory)
     voice.fail("its internal fix " + std::string(State::ID) + " has been deleted; a run without "
                "'pre no' creates it again");
@@ -190,7 +190,7 @@ void Hydrodynamics::solve()
   sd_solve_report report = {};
   const sd_status status = scene.anybody_sees() ? find_forces(report) : SD_OK;
   judge(status, report);
-  guess.keep(bodies, given, solver.exerted);
+  solver.keep();
 }
 
 void Hydrodynamics::velocities(const Solve::Take &take, const Given &known, double drawn)
@@ -259,7 +259,7 @@ static std::string how_far(const sd_solve_report &report)
  * and from now on: a run is not stranded by its default. */
 sd_status Hydrodynamics::find_forces(sd_solve_report &report)
 {
-  Solve::How how = {false, settings.tolerance, settings.max_iter};
+  const Solve::How how = {true, settings.tolerance, settings.max_iter};
   if (!bodies.joined() && algorithm() == StokesSettings::SUBSTITUTION) {
     const sd_status status = solver.substitution(how, report);
     fail_if_alone(where(StokesSettings::SUBSTITUTION), status);
@@ -272,10 +272,8 @@ sd_status Hydrodynamics::find_forces(sd_solve_report &report)
         .warn("diverged: " + how_far(report) +
               "; the run goes on with algorithm 2 ('algorithm 1 strict' stops)");
   }
-  how.warm = guess.recall(bodies, given);
   if (bodies.joined()) bodies.assemble();
-  const sd_status status = bodies.joined() ? solver.run(how, guess, report)
-                                           : solver.gradients(how, guess, report);
+  const sd_status status = bodies.joined() ? solver.run(how, report) : solver.gradients(how, report);
   fail_if_alone(where(StokesSettings::GRADIENTS), status);
   if (!shells.settings.on() || status == SD_OK)
     look_at_step(report, bodies.joined() || solver.preconditioner.attached());
@@ -285,20 +283,16 @@ sd_status Hydrodynamics::find_forces(sd_solve_report &report)
 /* In one loop, with lubrication in it. New random numbers leave nothing to begin from. */
 sd_status Hydrodynamics::find_motions(const Solve::Take &take, double drawn, sd_solve_report &report)
 {
-  if (drawn == 0.0) {
-    bodies.begin_films();
+  const bool noisy = drawn > 0.0;
+  assemble(noisy ? BodyScene::STANDING_FILMS : BodyScene::FILMS);
+  if (noisy)
+    solver.push();
+  else {
     solver.forget_noise();
     moments_left.clear();
   }
-  assemble();
-  if (settings.lubrication.on) {
-    if (drawn == 0.0) lubrication.place(scene, &ambient);
-    solver.tie_films();
-  }
-  if (drawn > 0.0) solver.push();
-  const bool warm = guess.recall(bodies, given) && drawn == 0.0;
   const sd_status status =
-      solver.run({warm, std::max(settings.tolerance, drawn), settings.max_iter}, guess, report);
+      solver.run({!noisy, std::max(settings.tolerance, drawn), settings.max_iter}, report);
   clump_poses.moves(&solver.V[6 * bodies.first_clump()]);
   solver.hand_out(take);
   films_power.clear();
@@ -306,7 +300,7 @@ sd_status Hydrodynamics::find_motions(const Solve::Take &take, double drawn, sd_
     read_motion();
     find_films_power();
   }
-  guess.keep(bodies, given, solver.exerted);
+  solver.keep();
   return status;
 }
 
@@ -314,32 +308,14 @@ void Hydrodynamics::look_at_step(const sd_solve_report &report, bool preconditio
 {
   const sd_system system = solver.system();
   guard.state = memory->global.guard;
+  const auto resist = [this](const std::vector<double> &v, std::vector<double> &Rv) {
+    return solver.resist(v, settings.max_iter, Rv);
+  };
   if (shells.settings.on())
-    look_at_shells(system);
+    guard.look_at_shells(system, resist, scene, memory->global.solves);
   else
     guard.look(system, report, scene, preconditioned, memory->global.solves);
   memory->global.guard = guard.state;
-}
-
-/* A hundredth of the forces is enough there. */
-void Hydrodynamics::look_at_shells(const sd_system &system)
-{
-  const Solve::How how = {false, 1e-2, settings.max_iter};
-  Guess none(lmp, scene, shells, settings, epochs);
-  none.l.resize(3 * (size_t) shells.first_of_rows()[scene.size()] + 3);
-  none.v.resize(6 * (size_t) scene.size() + 6);
-  sd_solve_report made = {};
-  const std::vector<double> found = solver.exerted;
-  guard.look_at_shells(
-      system,
-      [&](const std::vector<double> &v, std::vector<double> &Rv) {
-        bodies.pass(v, false);
-        const sd_status status = solver.run(how, none, made);
-        for (size_t j = 0; j < 6 * (size_t) scene.size(); j++) Rv[j] = -solver.exerted[j];
-        return status;
-      },
-      scene, memory->global.solves);
-  solver.exerted = found;
 }
 
 void Hydrodynamics::judge(sd_status status, const sd_solve_report &report)

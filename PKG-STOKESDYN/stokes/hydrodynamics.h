@@ -6,8 +6,7 @@
  * A step:   begin()                        the fluid, who takes part
  *           clumps(), solve(), drag()      forces, of rigid clumps and of all others
  *           velocities()                   or motions, without inertia
- * Who is a body, where it stands and what is given is in `bodies`, what the next solve begins from in
- * `guess`, and `solver` finds the rest. Between solves v' stands, and drag() alone gives the force for
+ * Who is a body, where it stands and what is given is in `bodies`, and `solver` finds the rest. Between solves v' stands, and drag() alone gives the force for
  * the velocity of now. Forces and v' are rows of the memory. */
 #ifndef SD_HYDRODYNAMICS_H
 #define SD_HYDRODYNAMICS_H
@@ -16,7 +15,6 @@
 #include "body_scene.h"
 #include "clump_poses.h"
 #include "fix_stokes_dynamics_state.h"
-#include "guess.h"
 #include "lubrication.h"
 #include "rigid_clumps.h"
 #include "scene.h"
@@ -96,7 +94,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   const ClumpPoses &poses() const { return clump_poses; }
   /* The sphere turns with its clump by the rotation matrix R, and so does the force on it, from
    * which the next solve begins. */
-  void turn(int i, const double R[9]) { guess.turn(i, R); }
+  void turn(int i, const double R[9]) { solver.guess.turn(i, R); }
 
   /* With shells, since the last step: first moments of the forces on the fluid, of the spheres'
    * points and of their films, [12 nlocal]: xx yy zz xy xz yz of each. Points about the centre of
@@ -143,7 +141,6 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Lubrication lubrication;
   ClumpPoses clump_poses;
   BodyScene bodies;
-  Guess guess;
   Solve solver;
   TimeStepGuard guard;
   /* in a run: what is looked at or said once */
@@ -179,10 +176,9 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void find_films_power();
   sd_status find_forces(sd_solve_report &report);
   sd_status find_motions(const Solve::Take &take, double drawn, sd_solve_report &report);
-  void assemble();
+  void assemble(BodyScene::Films films = BodyScene::NO_FILMS);
   Moves moves_of(const std::vector<double> &V) const;
   void look_at_step(const sd_solve_report &report, bool preconditioned);
-  void look_at_shells(const sd_system &system);
   void fit_shells();
   void judge(sd_status status, const sd_solve_report &report);
   /* by rows: points of the shells as they stand now, from their centre and in space, their radii,

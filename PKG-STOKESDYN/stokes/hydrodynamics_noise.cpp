@@ -19,13 +19,13 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-/* The bodies where they stand, but for films */
-void Hydrodynamics::assemble()
+/* The bodies where they stand */
+void Hydrodynamics::assemble(BodyScene::Films films)
 {
   clump_poses.find();
   place();
   bodies.place(width());
-  bodies.assemble();
+  bodies.assemble(films);
 }
 
 void Hydrodynamics::draw(const Given &known, const Solve::Draw &draw)
@@ -33,25 +33,18 @@ void Hydrodynamics::draw(const Given &known, const Solve::Draw &draw)
   solvers = ambient.who();
   given = known;
   moments_left.clear();
-  bodies.begin_films();
-  assemble();
-  if (settings.lubrication.on) {
-    lubrication.place(scene, &ambient, true);
-    solver.tie_films();
-  }
+  assemble(BodyScene::NOISY_FILMS);
   solver.draw(draw);
 }
 
 void Hydrodynamics::stress_of_noise(double tolerance, std::vector<double> &of_atoms)
 {
   sd_solve_report report = {};
-  if (settings.lubrication.on) lubrication.place(scene, nullptr);
   solver.push_alone();
-  guess.recall(bodies, given);
   const sd_status status =
-      solver.run({false, std::max(settings.tolerance, tolerance), settings.max_iter}, guess, report);
+      solver.run({false, std::max(settings.tolerance, tolerance), settings.max_iter}, report);
   judge(status, report);
-  guess.found_in_passing();
+  solver.guess.found_in_passing();
   stress(of_atoms);
 }
 
@@ -100,10 +93,7 @@ void Hydrodynamics::films(const Given &known)
   if (!settings.lubrication.on) return;
   given = known;
   clump_poses.find();
-  scene.stand(solvers, ambient);
-  scene.turn_shells();
-  bodies.stand_films();
-  lubrication.place(scene, &ambient);
+  bodies.stand_films(solvers);
 }
 
 }    // namespace StokesDyn

@@ -9,9 +9,10 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-Solve::Solve(LAMMPS *lmp, Scene &scene, BodyScene &bodies, Lubrication &lubrication, const Ambient &ambient) :
-    Pointers(lmp), preconditioner(lmp, scene), scene(scene), bodies(bodies), lubrication(lubrication),
-    ambient(ambient)
+Solve::Solve(LAMMPS *lmp, Scene &scene, BodyScene &bodies, const Ambient &ambient, const Given &given,
+             const Shells &shells, const StokesSettings &settings) :
+    Pointers(lmp), preconditioner(lmp, scene), guess(lmp, scene, bodies, given, shells, settings), scene(scene),
+    bodies(bodies), ambient(ambient)
 {
 }
 
@@ -26,7 +27,28 @@ double Solve::memory_usage() const
 
 // --- bodies ----------------------------------------------------------------------------------------
 
-sd_status Solve::run(const How &how, Guess &guess, sd_solve_report &report)
+sd_status Solve::run(const How &how, sd_solve_report &report)
+{
+  return solve_bodies(how, guess.recall() && how.warm, report);
+}
+
+sd_status Solve::resist(const std::vector<double> &motions, int max_iter, std::vector<double> &forces)
+{
+  const size_t n = scene.size();
+  std::vector<double> found = exerted, l(sd_bodies_rows(&bodies.bodies) + 3), v(bodies.width * (n + 1));
+  sd_solve_report unused = {};
+  guess.l.swap(l);
+  guess.v.swap(v);
+  bodies.pass(motions, false);
+  const sd_status status = solve_bodies({false, 1e-2, max_iter}, false, unused);
+  for (size_t j = 0; j < bodies.width * n; j++) forces[j] = -exerted[j];
+  guess.l.swap(l);
+  guess.v.swap(v);
+  exerted.swap(found);
+  return status;
+}
+
+sd_status Solve::solve_bodies(const How &how, bool warm, sd_solve_report &report)
 {
   const sd_bodies &A = bodies.bodies;
   V.resize(6 * sd_bodies_count(&A) + 6);
@@ -35,7 +57,7 @@ sd_status Solve::run(const How &how, Guess &guess, sd_solve_report &report)
   work.resize(sd_bodies_work(&A));
   const double *given = bodies.velocities.empty() ? nullptr : bodies.velocities.data();
   const sd_bodies_problem problem = {bodies.u.data(), bodies.F.data(), given,
-                                     how.warm,        how.tolerance,   how.max_iter};
+                                     warm,            how.tolerance,   how.max_iter};
   const sd_bodies_motion motion = {guess.l.data(), guess.v.data(), V.data(), v.data(),
                                    exerted.data()};
   sd_bodies_report made = {};
@@ -60,12 +82,6 @@ void Solve::hand_out(const Take &take) const
   }
   scene.to_atoms(2 * bodies.width, moved.data(),
                  [&](int i, const double *row) { take(i, row, row + m); });
-}
-
-void Solve::tie_films()
-{
-  tie.L = lubrication.matrix();
-  bodies.bodies.tie = &tie;
 }
 
 // --- points whose velocities are given -------------------------------------------------------------
@@ -110,12 +126,12 @@ sd_status Solve::substitution(const How &how, sd_solve_report &report)
   return status;
 }
 
-sd_status Solve::gradients(const How &how, Guess &guess, sd_solve_report &report)
+sd_status Solve::gradients(const How &how, sd_solve_report &report)
 {
   sd_system A = system();
   F.resize(bodies.flow.size() + bodies.width);
-  A.warm = how.warm;
-  for (size_t j = 0; j < bodies.flow.size() && how.warm; j++) F[j] = -guess.l[j];
+  A.warm = guess.recall() && how.warm;
+  for (size_t j = 0; j < bodies.flow.size() && A.warm; j++) F[j] = -guess.l[j];
   preconditioner.attach(A, guess.memory->places, guess.memory->global.places_box);
   const sd_status status = sd_solve_gradients(&A, bodies.flow.data(), how.tolerance, how.max_iter,
                                               F.data(), make_room(), &report);

@@ -1,4 +1,5 @@
-/* The solve of a step: bodies, an engine, films and a preconditioner, and from a guess loads and motions.
+/* The solve of a step: of bodies with their films, by an engine and a preconditioner, from what the memory holds,
+ * loads and motions.
  *
  *   run             bodies, and what is known of each: its load, its velocity, or of one that is spun some
  *                   of both (sd_bodies.h)
@@ -13,7 +14,6 @@
 #include "body_scene.h"
 #include "callback.h"
 #include "guess.h"
-#include "lubrication.h"
 #include "pointers.h"
 #include "preconditioner.h"
 #include "scene.h"
@@ -22,7 +22,6 @@
 #include "sd_drifter.h"
 #include "sd_random.h"
 #include "sd_solve.h"
-#include "sd_tie.h"
 
 #include <functional>
 #include <memory>
@@ -32,19 +31,26 @@ namespace StokesDyn {
 
 class Solve : protected LAMMPS_NS::Pointers {
  public:
-  Solve(LAMMPS_NS::LAMMPS *lmp, Scene &, BodyScene &, Lubrication &, const Ambient &);
+  Solve(LAMMPS_NS::LAMMPS *lmp, Scene &, BodyScene &, const Ambient &, const Given &, const Shells &,
+        const StokesSettings &);
   Preconditioner preconditioner;
+  Guess guess;
 
   struct How {
+    /* from what the memory holds, if there is anything; else from nothing */
     bool warm;
     double tolerance;
     int max_iter;
   };
-  /* The bodies have been placed; for run() assembled too, with their films. From a guess, which holds
-   * afterwards what was found. SD_OK or the core's. */
-  sd_status run(const How &how, Guess &guess, sd_solve_report &report);
+  /* The bodies have been placed; for run() assembled too. SD_OK or the core's. */
+  sd_status run(const How &how, sd_solve_report &report);
   sd_status substitution(const How &how, sd_solve_report &report);
-  sd_status gradients(const How &how, Guess &guess, sd_solve_report &report);
+  sd_status gradients(const How &how, sd_solve_report &report);
+  /* What was found to the memory */
+  void keep() { guess.keep(exerted); }
+  /* [width spheres] forces on spheres that move so, within 1 %, in a fluid that rests; what the last solve has
+   * found stays. */
+  sd_status resist(const std::vector<double> &motions, int max_iter, std::vector<double> &forces);
 
   /* What was found: [width spheres] forces on the fluid, films included; velocities of the spheres (of
    * the images that the rows stand for), and [6 bodies] */
@@ -53,9 +59,6 @@ class Solve : protected LAMMPS_NS::Pointers {
    * with torque: v and F [width] */
   using Take = ClumpPoses::Take;
   void hand_out(const Take &take) const;
-
-  /* Lubrication, which has been placed, in the loop */
-  void tie_films();
 
   // --- noise: a slip of the points and forces of films, as they are kept for the solve of a step
 
@@ -100,9 +103,7 @@ class Solve : protected LAMMPS_NS::Pointers {
  private:
   Scene &scene;
   BodyScene &bodies;
-  Lubrication &lubrication;
   const Ambient &ambient;
-  Owned<sd_tie, sd_tie_free> tie;
 
   /* by spheres: force of the fluid, what system() points to; scratch of sd_bodies */
   std::vector<double> F, drag, spin, work;
@@ -116,6 +117,7 @@ class Solve : protected LAMMPS_NS::Pointers {
   std::unique_ptr<double[]> scratch;
   size_t room = 0;
 
+  sd_status solve_bodies(const How &how, bool warm, sd_solve_report &report);
   double *make_room();
   void take_forces();
   std::vector<double> numbers(const sd_random_key &of_spheres) const;

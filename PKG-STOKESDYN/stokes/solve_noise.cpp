@@ -113,7 +113,7 @@ void Solve::draw(const Draw &draw)
   load_left.assign(pushed.size(), 0.0);
   sd_status status = SD_OK;
   if (A.tie) {
-    status = lubrication.draw(scene, draw.of_films, pushed.data());
+    status = bodies.draw_films(draw.of_films, pushed.data());
     if (status == SD_OK) status = sd_tie_make(&A);
   }
   for (double &force : pushed) force *= draw.scale;
@@ -195,6 +195,7 @@ void Solve::push()
 
 void Solve::push_alone()
 {
+  if (bodies.bodies.tie) bodies.rest_films();
   std::copy_n(slip.begin(), bodies.u.size(), bodies.u.begin());
   std::copy_n(pushed.begin(), bodies.F.size(), bodies.F.begin());
   std::fill(bodies.velocities.begin(), bodies.velocities.end(), 0.0);
