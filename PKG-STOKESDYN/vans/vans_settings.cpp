@@ -170,6 +170,13 @@ void VansSettings::take_gravity(Keywords &in)
   }
 }
 
+void VansSettings::take_drag(Keywords &in)
+{
+  drag_given = true;
+  law.drag.law = in.option<sd_drag_of_one>({"yade", "schiller_naumann", "brown_lawler", "ferguson_church", "ergun",
+                                            "gidaspow", "beetstra", "koch_hill"});
+}
+
 void VansSettings::take_hindrance(Keywords &in)
 {
   if (in.take("richardson_zaki"))
@@ -208,13 +215,7 @@ void VansSettings::read(Keywords &in)
       {"convective", [&] { convective_file = file_or(in, "off"); }},
       {"solve", [&] { period = in.positive(), dt = in.positive(); }},
       {"stream", [&] { law.rest = in.choice({"steady", "rest"}) == 1; }},
-      {"drag",
-       [&] {
-         drag_given = true;
-         law.drag.law = in.option<sd_drag_of_one>(
-             {"yade", "schiller_naumann", "brown_lawler", "ferguson_church", "ergun", "gidaspow", "beetstra",
-              "koch_hill"});
-       }},
+      {"drag", [&] { take_drag(in); }},
       {"fall_diameter", [&] { law.drag.fall = in.positive(); }},
       {"hindrance", [&] { take_hindrance(in); }},
       {"added_mass", [&] { law.added_mass = in.take("off") ? 0.0 : in.not_negative(); }},
@@ -230,8 +231,7 @@ void VansSettings::read(Keywords &in)
       {"phi_bed", [&] { fluid.phi_bed = fraction(in); }},
       {"bed_average", [&] { bed_average = (int) in.integer(1, 1000000); }},
       {"sublayer", [&] { fluid.sublayer = in.yes_no(); }},
-      {"viscosity",
-       [&] { fluid.viscosity = in.option<sd_vans_viscosity>({"constant", "einstein", "power"}); }},
+      {"viscosity", [&] { fluid.viscosity = in.option<sd_vans_viscosity>({"constant", "einstein", "power"}); }},
       {"surface", [&] { take_surface(in); }},
       {"discharge", [&] { if ((fluid.held = !in.take("off"))) discharge = one_for_all(in); }},
       {"adjust", [&] { reach = in.choice({"slope", "depth"}) == 1 ? in.positive() : 0.0; }},
@@ -249,13 +249,29 @@ void VansSettings::read(Keywords &in)
       {"intensity", [&] { take_intensity(in); }},
       {"renewal", [&] { renewal = in.positive(); }},
       {"schmidt", [&] { schmidt = in.positive(); }},
-      {"rules",
-       [&] { fluid.rules = law.rules = in.option<sd_vans_rules>({"consistent", "yade"}); }},
+      {"rules", [&] { fluid.rules = law.rules = in.option<sd_vans_rules>({"consistent", "yade"}); }},
       {"conserve", [&] { conserve = in.yes_no(); }},
       {"overlap", [&] { overlap_once = in.choice({"twice", "once"}) == 1; }},
       {"region", [&] { region = in.word(); }},
       {"average", [&] { average = in.word(); }},
   });
+}
+
+/* What the rules of the original have not got */
+void VansSettings::check_yade(const Keywords &in) const
+{
+  if (!yade()) return;
+  in.require(mesh_file.empty(), "keyword mesh: rules yade needs slices of equal height, mesh ncell dz zref");
+  in.require(!law.felt_by_volume,
+             "keyword felt is not available with rules yade: grains feel the water at their centre");
+  in.require(fluctuation != LANGEVIN, "keyword fluctuation: langevin is not available with rules yade");
+  in.require(law.drag.fall == 0.0, "keyword fall_diameter is not available with rules yade");
+  in.require(law.drag.law == SD_DRAG_YADE && law.drag.hindrance == SD_HINDRANCE_POWER,
+             "keyword drag: with rules yade only drag yade and hindrance n are available");
+  in.require(law.added_mass == 0.0, "keyword added_mass is not available with rules yade");
+  in.require(fluid.wall_roughness == 0.0 && !fluid.narrow,
+             "keywords wall_roughness and wall_mixing are not available with rules yade");
+  in.require(fluid.bed_mixing == 0.0, "keyword bed_mixing is not available with rules yade");
 }
 
 /* Rules between keywords. */
@@ -265,31 +281,18 @@ void VansSettings::check(const Keywords &in) const
   in.require(in.given("fluid"), "keyword fluid (density and viscosity) is required");
   in.require(in.given("gravity"),
              "keyword gravity (gx gy gz) is required; its x component is the slope");
-  in.require(!yade() || mesh_file.empty(),
-             "keyword mesh: rules yade needs slices of equal height, mesh ncell dz zref");
-  in.require(!law.felt_by_volume || !yade(),
-             "keyword felt is not available with rules yade: grains feel the water at their centre");
-  in.require(!law.felt_by_volume || !point,
-             "keyword felt has no effect with grains point");
+  check_yade(in);
+  in.require(!law.felt_by_volume || !point, "keyword felt has no effect with grains point");
   in.require(!in.given("renewal") || fluctuates(), "keyword renewal requires fluctuations");
   in.require(!in.given("renewal") || fluctuation != DEPTH,
              "keyword renewal has no effect with fluctuation depth: each grain has a time of its own");
-  in.require(!in.given("intensity") || fluctuates(),
-             "keyword intensity requires fluctuations");
+  in.require(!in.given("intensity") || fluctuates(), "keyword intensity requires fluctuations");
   in.require(!fluctuates() || has_grains(),
              "keyword fluctuation: with couple fluid there are no grains that could feel it");
-  in.require(!in.given("schmidt") || fluctuation == LANGEVIN,
-             "keyword schmidt requires fluctuation langevin");
-  in.require(fluctuation != LANGEVIN || !yade(),
-             "keyword fluctuation: langevin is not available with rules yade");
-  in.require(law.drag.fall == 0.0 || !yade(), "keyword fall_diameter is not available with rules yade");
-  in.require(!yade() || (law.drag.law == SD_DRAG_YADE &&
-                         law.drag.hindrance == SD_HINDRANCE_POWER),
-             "keyword drag: with rules yade only drag yade and hindrance n are available");
+  in.require(!in.given("schmidt") || fluctuation == LANGEVIN, "keyword schmidt requires fluctuation langevin");
   in.require(!in.given("hindrance") || !sd_drag_of_bed(law.drag.law),
              "keyword hindrance: ergun, gidaspow, beetstra and koch_hill have the neighbours of a grain in them: "
              "leave hindrance out");
-  in.require(law.added_mass == 0.0 || !yade(), "keyword added_mass is not available with rules yade");
   in.require(!upflow || (averages() && !yade()),
              "keyword upflow: it needs couple one or two, and rules consistent");
   in.require(reach == 0.0 || (fluid.held && follows()),
@@ -310,9 +313,6 @@ void VansSettings::check(const Keywords &in) const
   const bool walls = fluid.width > 0.0;
   in.require(walls || fluid.wall_roughness == 0.0, "keyword wall_roughness requires sidewall");
   in.require(walls || !fluid.narrow, "keyword wall_mixing requires sidewall");
-  in.require(!yade() || (fluid.wall_roughness == 0.0 && !fluid.narrow),
-             "keywords wall_roughness and wall_mixing are not available with rules yade");
-  in.require(fluid.bed_mixing == 0.0 || !yade(), "keyword bed_mixing is not available with rules yade");
   in.require(fluid.bed_mixing == 0.0 || fluid.turbulence != SD_VANS_LAMINAR,
              "keyword bed_mixing has no effect with turbulence none");
   const bool stands = !gravity[0].is_variable() && law.g[0] == 0.0 && !dpdx.is_variable() &&

@@ -101,10 +101,12 @@ struct VansSettings {
   void take_fluctuation(Keywords &in);
   void take_intensity(Keywords &in);
   void take_fluid(Keywords &in);
+  void take_drag(Keywords &in);
   void take_hindrance(Keywords &in);
   void take_surface(Keywords &in);
   void take_sidewall(Keywords &in);
   void check(const Keywords &in) const;
+  void check_yade(const Keywords &in) const;
   void read_mesh();
   void read_files();
 };

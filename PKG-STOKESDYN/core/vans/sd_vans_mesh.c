@@ -1,4 +1,4 @@
-#include "sd_vans.h"
+#include "sd_vans_grains.h"
 
 int sd_vans_slice_of(const sd_vans_mesh *mesh, double z)
 {

@@ -1,6 +1,6 @@
 #include "sd_constants.h"
 #include "sd_linear.h"
-#include "sd_vans.h"
+#include "sd_vans_grains.h"
 
 #include <math.h>
 #include <stdlib.h>

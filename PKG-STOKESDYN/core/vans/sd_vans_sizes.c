@@ -1,5 +1,5 @@
 #include "sd_constants.h"
-#include "sd_vans.h"
+#include "sd_vans_grains.h"
 
 #include <math.h>
 

@@ -1,0 +1,181 @@
+/* The mesh of the stream of sd_vans.h, which says what its slices and rules are, and the grains in it: what the
+ * stream does to them, and their averages over slices. */
+#ifndef SD_VANS_GRAINS_H
+#define SD_VANS_GRAINS_H
+
+#include "sd_drag.h"
+#include "sd_status.h"
+
+#include <stdint.h>
+
+SD_BEGIN_C
+
+typedef enum { SD_VANS_CONSISTENT, SD_VANS_YADE } sd_vans_rules;
+
+/* ---- mesh ------------------------------------------------------------------------------------ */
+
+typedef struct {
+  /* N >= 2 */
+  int ncell;
+  /* height of the bottom */
+  double z_ref;
+  /* > 0: all slices alike, e_n = n dz; 0: the edges say */
+  double dz;
+  /* [N+1] heights above z_ref, also for equal slices */
+  const double *edge;
+} sd_vans_mesh;
+
+/* Slice of the height z: -1 below the mesh, N above it. */
+int sd_vans_slice_of(const sd_vans_mesh *mesh, double z);
+
+static inline double sd_vans_height(const sd_vans_mesh *mesh, int n)
+{
+  return mesh->dz > 0.0 ? mesh->dz : mesh->edge[n + 1] - mesh->edge[n];
+}
+
+/* ---- grains ---------------------------------------------------------------------------------- */
+
+typedef struct {
+  int n;
+  /* [n][3], [n][3], [n] */
+  const double *x, *v, *a;
+  /* [n][3] u', added to the velocity of the water; NULL: none */
+  const double *fluctuation;
+  /* [n] share of each sphere that counts (overlaps), in averages and forces; NULL: all of it */
+  const double *weight;
+  /* [n] 0 leaves a sphere out; NULL: all take part */
+  const unsigned char *take;
+  /* [n][3] for the added mass; NULL: none */
+  const double *acceleration;
+} sd_vans_grains;
+
+/* Volume of a sphere in each slice that it reaches: differences of one primitive, so that the parts
+ * of any cut sum to 4/3 pi a^3 up to rounding.
+ *   point   1: all of it is where its centre is
+ *   z       height of its centre (not above z_ref: as LAMMPS has it)
+ *   first   out, lowest slice that it reaches, >= 0
+ *   V       out, V[k] is the volume in slice first + k
+ * Returns how many; 0 if it reaches none; never more than max (a caller gives N). What lies outside
+ * the mesh is not in V. Yade's rule mirrors the slices at that of the centre and cuts each only on
+ * its far side: for a/dz < 5 the volume is not conserved. */
+int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, double z, double a,
+                   int *first, double *V, int max);
+
+typedef struct {
+  /* density and dynamic viscosity of the fluid, > 0 */
+  double rho, eta;
+  /* of hindrance, n: drag * (1 - phi)^-n; 3.1 */
+  double exponent;
+  /* gravity */
+  double g[3];
+  /* 0: steady stream, no buoyancy along x; 1: fluid at rest */
+  int rest;
+  /* C_l; 0: none */
+  double lift;
+  /* [N] a force along x, taken off every grain of the slice; NULL: none */
+  const double *convective;
+  /* 0: a grain feels the water at its centre, and its drag is spread over the slices by volume.
+   * 1: each slice of a grain feels the water there, in proportion to its volume, and gives the
+   * drag back there: the grain feels the mean over its volume (of a drag linear in U, the mean
+   * of U), and what water and grains exchange is symmetric slice by slice. Not with Yade's rule. */
+  int felt_by_volume;
+  sd_vans_rules rules;
+  /* pressure gradient along x, which pushes a grain by its volume times that */
+  double dpdx;
+  /* which drag; zeros: Yade's */
+  sd_drag_law drag;
+  /* C: -C rho V dv/dt on an accelerated grain */
+  double added_mass;
+  /* velocity of the water along z: [N] of the slices, and outside the mesh; NULL: none */
+  const double *upward;
+  double flux;
+} sd_vans_force_law;
+
+/* Force of the stream on the grains that take part, 0 on the others. Of members that overlap each
+ * has its share of all of it, so that the buoyancy of a clump is that of its union.
+ *   hindrance  [N] of sd_hindrance_of
+ *   F       [n][3] out: drag, added mass, buoyancy, pressure gradient, lift, convective
+ *   drag_x  [n] out or NULL: the part that the water takes back, drag and added mass along x
+ * Returns the number of spheres with their centre outside the mesh. They feel the top (or bottom)
+ * values: above U[N] and the phi of the last slice, below U[0] = 0 and the phi of the first. Yade's
+ * rule: no force at all. */
+int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
+                   const double *hindrance, const sd_vans_grains *grains, double *F,
+                   double *drag_x);
+
+/* The largest rate at which drag takes the velocity of a grain to that of the water, dF/dw/m over
+ * the grains that take part, and which grain: a step of velocity Verlet must be shorter than
+ * 2/rate. mass [n]. 0 if there is none. */
+double sd_vans_stiffest(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
+                        const double *hindrance, const sd_vans_grains *grains, const double *mass,
+                        int *stiffest);
+
+/* Rows of a profile; in sums over grains the first is the volume, the others are volume times (vx,
+ * vy, vz, drag along x). */
+enum { SD_VANS_PHI, SD_VANS_VX, SD_VANS_VY, SD_VANS_VZ, SD_VANS_DRAG, SD_VANS_ROWS };
+
+typedef struct {
+  /* 1: all the volume of a grain in the slice of its centre */
+  int point;
+  /* size classes; 0: none */
+  int nclass;
+  /* [nclass]; a grain belongs to the class of exactly its radius, or, with bins, of its bin */
+  const double *class_radius;
+  /* [2][N] out, added to: force of the drag along x and along z in each slice, of grains of any
+   * sizes; NULL: not wanted */
+  double *density;
+  /* [nclass+1] limits of bins, that rise; NULL: the classes are no bins */
+  const double *class_limit;
+} sd_vans_averaging;
+
+/* The class of radius a: the one of exactly this radius, since radii are names (a grain that has
+ * grown belongs to none: -1); with bins the one with limit_c <= a < limit_(c+1), where the first and
+ * the last have all that is smaller and larger. */
+int sd_vans_class_of(const sd_vans_averaging *how, double a);
+
+/* Limits [n+1] of n bins of equal ratio from radius lo to radius hi, lo (hi/lo)^(c/n), as sieves
+ * have them. 0 < lo <= hi. */
+void sd_vans_bins(double lo, double hi, int n, double *limit);
+
+/* Adds a^3 and a^2 of the grains to the sums [nclass][2] of their classes. */
+void sd_vans_class_sums(const sd_vans_averaging *how, const sd_vans_grains *grains, double *sums);
+
+/* Radius and volume [nclass] of bins from those sums: sum a^3 / sum a^2, Sauter's mean, with which
+ * phi/V_c spheres have the volume and the surface of the grains; of an empty bin its geometric
+ * middle and 0. */
+void sd_vans_class_means(int nclass, const double *limit, const double *sums, double *radius,
+                         double *volume);
+
+/* Adds grains to the sums [1 + nclass][N][ROWS]: of all, then of each class. The drag is that of
+ * the law with hindrance (from the phi before this call) and U, 0 for a grain with its centre
+ * outside the mesh; with felt_by_volume in every slice that of the slip there. scratch [2 N], or
+ * [3 N] with density.
+ * Returns -1, or the index of the first sphere that belongs to no class.
+ * Yade's rule: mirrored slices; the velocities of a class all in the slice of the centre. */
+int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
+                    const sd_vans_averaging *how, const double *U, const double *hindrance,
+                    const sd_vans_grains *grains, double *sums, double *scratch);
+
+/* A profile from its sums [N][ROWS]: phi = V / (area * height of the slice), the others divided by
+ * V, 0 where there is no grain. */
+void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums, double *profile);
+
+/* Spreads one value of each sphere over the slices by their share of its volume: out [N] += value.
+ * What belongs to the part of a sphere outside the mesh goes to the lowest or the highest slice, so
+ * that the sum over slices grows by the sum over spheres. */
+void sd_vans_spread(const sd_vans_mesh *mesh, int point, const sd_vans_grains *grains,
+                    const double *value, double *out);
+
+/* The integral of a density per volume of grains over each sphere: out [n] = sum over slices of V_k
+ * density_k, times weight (or 1). */
+void sd_vans_gather(const sd_vans_mesh *mesh, int point, const sd_vans_grains *grains,
+                    const double *density, double *out);
+
+/* Share of sphere i's volume that counts when n spheres that overlap are one body: its part of the
+ * union, cut off from the others by their radical planes, over its volume. The sum over the spheres
+ * is the volume of the union: exact while no three spheres overlap in one place, to 1e-6 of the
+ * sphere otherwise. As many spheres may cut it as there are. x [n][3], a [n]. -1: out of memory. */
+double sd_vans_union_share(int n, const double *x, const double *a, int i);
+
+SD_END_C
+#endif
