@@ -36,8 +36,8 @@ template <class Base> class GhostRows : public Base {
   }
 
  protected:
-  /* rows [width] of atoms to their ghosts; those of ghosts to the owners, who add them up, or keep the largest.
-   * At most comm_forward and comm_reverse numbers, which the constructor says */
+  /* Rows [width] of atoms to their ghosts; and those of ghosts to the owners, who add them up, or keep the
+   * largest. width: at most comm_forward and comm_reverse, which the constructor says */
   void forward(double *rows, int width)
   {
     assert(width <= this->comm_forward);

@@ -32,8 +32,8 @@ class BodyScene : protected LAMMPS_NS::Pointers {
 
   /* Vectors have that many numbers of a sphere. The scene has been updated, and the clumps found. */
   void place(int width);
-  /* Films: those where the spheres stand, in the fluid of this step; the same for random forces too; those that
-   * stand_films() has left, with the arms of then */
+  /* FILMS: those between the spheres where they stand, in the fluid of this step. NOISY_FILMS: the same, and
+   * random forces will be drawn. STANDING_FILMS: those that stand_films() has left, with the arms of then */
   enum Films { NO_FILMS, FILMS, NOISY_FILMS, STANDING_FILMS };
   void assemble(Films films = NO_FILMS);
   /* Everybody rests in a fluid that moves with this slip [width spheres]; strained: and varies around each
@@ -55,16 +55,15 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   int width = 3;
   std::vector<double> F, flow, resistance;
 
-  /* The bodies, and the fluid at their points. velocities: [6 bodies] of those that are known,
-   * empty: nobody's are, or all rest */
+  /* The bodies, and the fluid at their points. velocities [6 bodies]: of those whose velocity is given;
+   * empty: there are none, or all of them rest */
   sd_bodies bodies = {};
   std::vector<double> u, velocities;
-  /* For noise: the bodies of a shape as they are in open space, whatever wall they stand at, and how each
-   * moves the points of it */
+  /* For noise: the bodies that have a shape, as if there were no wall, and how each moves its points */
   const std::vector<sd_body> &in_open_space() const { return open; }
   BodyNoise::Turns turns(size_t shaped) const;
-  /* The bodies with the part of their matrix that is not drawn at once, where the engine's divides
-   * (sd_mobility.h). It stands as long as they do. */
+  /* Where the engine draws a part of its matrix at once (divides of sd_mobility.h): the bodies with the rest
+   * of it. It stands as long as they do. */
   sd_bodies undrawn();
   /* The films of these atoms where they stand now, before the points of the bodies go elsewhere */
   void stand_films(const std::vector<int> &who);

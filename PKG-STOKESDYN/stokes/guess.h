@@ -23,7 +23,8 @@ namespace StokesDyn {
 
 class Guess : protected LAMMPS_NS::Pointers {
  public:
-  Guess(LAMMPS_NS::LAMMPS *lmp, Scene &, const BodyScene &, const Given &, const Shells &, const StokesSettings &);
+  Guess(LAMMPS_NS::LAMMPS *lmp, Scene &, const BodyScene &, const Given &, const Shells &,
+        const StokesSettings &);
   /* that of the step: Hydrodynamics::begin */
   FixStokesDynamicsState *memory = nullptr;
 

@@ -6,8 +6,9 @@
  * A step:   begin()                        the fluid, who takes part
  *           clumps(), solve(), drag()      forces, of rigid clumps and of all others
  *           velocities()                   or motions, without inertia
- * Who is a body, where it stands and what is given is in `bodies`, and `solver` finds the rest. Between solves v' stands, and drag() alone gives the force for
- * the velocity of now. Forces and v' are rows of the memory. */
+ * Who is a body, where it stands and what is given is in `bodies`, and `solver` finds the rest. Between
+ * solves v' stands, and drag() alone gives the force for the velocity of now. Forces and v' are rows of the
+ * memory. */
 #ifndef SD_HYDRODYNAMICS_H
 #define SD_HYDRODYNAMICS_H
 
@@ -40,9 +41,9 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Epochs epochs;
   Ambient ambient;
   Scene scene;
-  /* does a fix report v'? It is not made for rigid clumps unless somebody wants it */
+  /* Does a fix report v'? For rigid clumps it is computed only then. */
   bool reported = false;
-  /* does fix stokes_dynamics/overdamped find the velocities? Then the pair style has nothing to do */
+  /* Does fix stokes_dynamics/overdamped find the velocities? Then the pair style does nothing. */
   bool overdamped = false;
   /* of this LAMMPS as it is now; nullptr before the first run */
   FixStokesDynamicsState *memory = nullptr;
@@ -56,9 +57,9 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void init();
   /* Error: other settings than those of init() ('run' with 'pre no' behind pair_style) */
   void check_prepared() const;
-  /* Reads the fluid and finds the memory; in a step, who takes part too. In its middle, elsewhere than
-   * there, that and all lists stand as they are; half a step later, the box moves as it will then. Errors:
-   * Ambient::read; check_prepared(); a memory that has been deleted. */
+  /* Reads the fluid and finds the memory. STEP: and finds who takes part. MIDDLE: spheres stand elsewhere
+   * than in the step, and lists stay as they are. HALF_LATER: the same, and the box moves as it will half a
+   * step from now. Errors: Ambient::read; check_prepared(); a memory that has been deleted. */
   enum Moment { STEP, MIDDLE, HALF_LATER };
   void begin(Moment moment = STEP);
   /* For a step that is computed in its middle: Ambient::look_ahead */
@@ -70,17 +71,17 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void solve();
   void drag();
 
-  /* Of all that takes part, from its loads, in any order; and forces on those that are held. A step is
-   * begin() and this. Where all interact, the forces go to rows of the memory too: the next guess.
-   * drawn: with the noise of draw(), films as films() has left them, and to this tolerance, or that of the
-   * settings if it is larger; 0: without that. */
+  /* The velocities of all that takes part, from its loads, and the forces on those that are held; take() has
+   * them in any order. A step without inertia is begin() and this. Where spheres interact, the memory keeps
+   * the forces as the guess of the next step. drawn > 0: with the noise of draw() and the films that films()
+   * has left, to this tolerance or that of the settings, whichever is larger. */
   void velocities(const Solve::Take &take, const Given &known, double drawn = 0.0);
 
-  // --- a step with noise, where all interact (hydrodynamics_noise.cpp): begin() and one of these at each
-  // place, draw() first, then velocities()
+  // --- a step with noise, where spheres interact: at each place begin() and one of these, draw() first and
+  // velocities() last (hydrodynamics_noise.cpp)
 
   void draw(const Given &known, const Solve::Draw &draw);
-  /* There, and to this tolerance: stress() of the same noise alone, whose mean is 0 */
+  /* Behind draw(), at the same place: stress() of that noise alone, whose mean is 0, to this tolerance */
   void stress_of_noise(double tolerance, std::vector<double> &of_atoms);
   Moves half_step_of_points() const { return moves_of(solver.of_points); }
   Moves half_step_of_films() const { return moves_of(solver.of_films); }
@@ -90,22 +91,21 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void difference(const Given &known, double sign);
   void films(const Given &known);
 
-  /* Those of rigid clumps, and who is free, since then */
+  /* The rigid clumps of the last step, and which spheres are free */
   const ClumpPoses &poses() const { return clump_poses; }
   /* The sphere turns with its clump by the rotation matrix R, and so does the force on it, from
    * which the next solve begins. */
   void turn(int i, const double R[9]) { solver.guess.turn(i, R); }
 
-  /* With shells, since the last step: first moments of the forces on the fluid, of the spheres'
-   * points and of their films, [12 nlocal]: xx yy zz xy xz yz of each. Points about the centre of
-   * their sphere; without inertia also what keeps clumps together against loads. Random forces of films are
-   * no stress: with them the mean is that of Bossis & Brady (compute_stokes_dynamics_stress.h). On all ranks
-   * together. */
+  /* With shells, of the last step: first moments of the forces on the fluid [12 nlocal], xx yy zz xy xz yz of
+   * a sphere's points, about its centre, and then of its films. Without inertia those of the points have the
+   * forces that hold clumps together as well. Random forces of films are no stress: so the mean is that of
+   * Bossis & Brady (compute_stokes_dynamics_stress.h). On all ranks together. */
   void stress(std::vector<double> &of_atoms);
 
-  /* In a step that was computed, until its end: what makes the flow, of this rank. [10 n]: place,
-   * radius, and force and torque on the fluid, over its viscosity, of each sphere or point of its
-   * shell. viscosity: becomes that of each, [n]. On all ranks together. */
+  /* What makes the flow in a step that has been computed, until its end: of each sphere of this rank, or of
+   * each point of its shell, place, radius, and force and torque on the fluid over its viscosity, [10 n].
+   * viscosity [n], if it is wanted. On all ranks together. */
   std::vector<double> on_fluid(std::vector<double> *viscosity = nullptr);
 
   /* In a slit with flow flux: the mean pressure gradient [3] that keeps the flux at 0, in the same
@@ -130,7 +130,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   double dissipation(int i) const;
   /* That second part, of the velocities of this step */
   double strain_power(int i) const { return films_power.empty() ? 0.0 : films_power[i]; }
-  /* Where a run goes on with the forces of before: what else is told of them. */
+  /* A run goes on with the forces of the last one: finds what else outputs need. */
   void stand();
   double memory_usage() const;
 
@@ -152,8 +152,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* first step of the run that the last step was of */
   LAMMPS_NS::bigint began = -1;
 
-  /* atoms of this rank that are the solver's: all that take part, but those of rigid clumps. Rows of
-   * a solve are those that the scene makes of them */
+  /* The atoms of this rank whose forces a solve finds: all that take part, without those of rigid clumps
+   * that move each by itself. The scene makes the rows of a solve of them. */
   std::vector<int> solvers;
   /* by rows: velocities of the spheres, and forces of lubrication on them */
   std::vector<double> films_v, films_F;

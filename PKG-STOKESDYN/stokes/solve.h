@@ -1,5 +1,5 @@
-/* The solve of a step: of bodies with their films, by an engine and a preconditioner, from what the memory holds,
- * loads and motions.
+/* The solve of a step: finds loads and motions of bodies with their films, by an engine and a preconditioner,
+ * from what the memory holds of the last one.
  *
  *   run             bodies, and what is known of each: its load, its velocity, or of one that is spun some
  *                   of both (sd_bodies.h)
@@ -48,7 +48,7 @@ class Solve : protected LAMMPS_NS::Pointers {
   sd_status gradients(const How &how, sd_solve_report &report);
   /* What was found to the memory */
   void keep() { guess.keep(exerted); }
-  /* [width spheres] forces on spheres that move so, within 1 %, in a fluid that rests; what the last solve has
+  /* [width spheres] forces on spheres that move so in a fluid at rest, within 1 %. What the last solve has
    * found stays. */
   sd_status resist(const std::vector<double> &motions, int max_iter, std::vector<double> &forces);
 
@@ -77,18 +77,19 @@ class Solve : protected LAMMPS_NS::Pointers {
    * and are tied; and the half steps of sd_drifter.h: velocities [6 bodies]. On all ranks together. */
   void draw(const Draw &draw);
   std::vector<double> of_points, of_films;
-  /* After draw(): does the mean of a solve have all of the drift? Otherwise it lacks
+  /* After draw(): is there a part of the drift that the mean of one solve lacks? The same on all ranks. It is
    *   slip    kT sum_k (d_k M') A_k  =  <[M'(x + e W) - M'(x - e W)] A W> kT/(2 e)
    *   torque -kT sum_k (d_k K)^T A_k    likewise,      W [6 bodies] random, of variance 1 or e
-   * the same on all ranks. wander(): e W, for a draw; difference(): the bodies have been assembled at
-   * x + sign e W. A W [points], and the part kT/(2 e) of it, for others of whom something is left. */
+   * wander() gives e W. difference(sign) adds what bodies show that have been assembled at x + sign e W.
+   * wanderers() is A W [points] and part() is kT/(2 e), for the stress, which lacks something as well. */
   bool needs_differences() const { return differs; }
   std::vector<double> wander(const Draw &draw);
   void difference(double sign);
   const std::vector<double> &wanderers() const { return wandering; }
   double part() const { return kT / (2.0 * reach); }
-  /* The bodies have been assembled for the solve: u and F with what was drawn and what is left of the drift;
-   * or what was drawn alone, in a fluid at rest and without loads; or nothing, and nothing was drawn. */
+  /* When the bodies have been assembled for the solve. push(): what was drawn, and the rest of the drift, is
+   * added to their flow and loads; push_alone(): it takes the place of these, in a fluid at rest;
+   * forget_noise(): nothing was drawn in this step. */
   void push();
   void push_alone();
   void forget_noise() { pushed.clear(); }

@@ -1,5 +1,5 @@
-/* The mesh of the stream of sd_vans.h, which says what its slices and rules are, and the grains in it: what the
- * stream does to them, and their averages over slices. */
+/* The mesh of a stream, and the grains in it: what the stream does to them, and their averages over slices.
+ * sd_vans.h says what slices, arrays and rules are. */
 #ifndef SD_VANS_GRAINS_H
 #define SD_VANS_GRAINS_H
 

@@ -68,7 +68,8 @@ struct sd_field_kernels {
 
 SD_KERNEL_TABLES(struct sd_field_kernels, sd_field);
 
-/* u of the part, whose sources are those of f->cells in their order, += the near part. SD_OK or SD_ENOMEMORY. */
+/* u of the part += the near part; its sources are those of f->cells, in their order. SD_OK or
+ * SD_ENOMEMORY. */
 sd_status sd_field_near(sd_field *f, const sd_field_part *p,
                         const struct sd_field_kernels *kernels);
 

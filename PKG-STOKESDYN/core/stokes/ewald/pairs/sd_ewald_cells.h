@@ -30,8 +30,8 @@ typedef struct {
   size_t place_room, first_room, column_room, range_room;
 } sd_ewald_cells;
 
-/* Of the places x [3 count] those that take part (there [count] > 0; NULL: all), for pairs within reach. centre
- * [3 count + SD_FULL]: memory that the walk needs. SD_OK or SD_ENOMEMORY. */
+/* Of the places x [3 count] those that take part (there [count] > 0; NULL: all), for pairs within reach.
+ * centre [3 count + SD_FULL]: memory that the walk needs. SD_OK or SD_ENOMEMORY. */
 sd_status sd_ewald_cells_sort(sd_ewald_cells *c, const double *x, const double *there, int count,
                               double reach, double *centre);
 
