@@ -221,6 +221,7 @@ void FixStokesDynamicsState::write_state(NamedState &out)
   out.put("in_axes_of_shells", 1.0);
   out.put("larger_spheres", of_larger_spheres());
   out.put_bits("settings", global.settings);
+  out.put_bits("guess", global.guess);
 }
 
 void FixStokesDynamicsState::read_state(const NamedState &in)
@@ -230,6 +231,7 @@ void FixStokesDynamicsState::read_state(const NamedState &in)
   global.loose = in.get("loose");
   global.open_box = in.get("open_box");
   global.settings = in.get_bits("settings", 0);
+  global.guess = in.get_bits("guess", 0);
   give_larger_spheres(in.get("larger_spheres"));
   if (points > 0 && in.get("in_axes_of_shells", 0.0) == 0.0)
     global.last_step = -1;    // of a version that kept forces of points in space

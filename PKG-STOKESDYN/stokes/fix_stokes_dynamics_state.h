@@ -82,8 +82,10 @@ class FixStokesDynamicsState : public RowsFix {
     double iterations = 0, residual = 0;
     /* time of the runs before the restart file that LAMMPS's own clock does not count */
     double time_before = 0;
-    /* v' that the rows hold, of solves that follow one another: 0, 1, 2 */
+    /* answers that the rows hold, of solves that follow one another: 0, 1, 2; and what these were asked, a
+     * number of Guess; 0: nothing that others begin from */
     double solutions = 0;
+    uint64_t guess = 0;
     /* forces of points in the last solve: were they nearer to the line through the two before it
      * than to the last of these? */
     double line = 0;

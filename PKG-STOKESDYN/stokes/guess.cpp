@@ -1,10 +1,13 @@
 #include "guess.h"
 
 #include "ranks.h"
+#include "solve.h"
 
+#include "sd_hash.h"
 #include "sd_linear.h"
 
 #include <algorithm>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 
@@ -12,46 +15,72 @@ namespace StokesDyn {
 
 using State = FixStokesDynamicsState;
 
-Guess::Guess(LAMMPS *lmp, Scene &scene, const BodyScene &bodies, const Given &given, const Shells &shells,
+Guess::Guess(LAMMPS *lmp, Scene &scene, const BodyScene &bodies, const Shells &shells,
              const StokesSettings &settings) :
-    Pointers(lmp), scene(scene), bodies(bodies), given(given), shells(shells), settings(settings),
-    epochs(scene.since())
+    Pointers(lmp), scene(scene), bodies(bodies), shells(shells), settings(settings)
 {
 }
 
-bool Guess::recall()
+/* What a guess follows from: the pair_style command, what the solve is asked, and which shells the spheres have.
+ * What is kept stands while this is the number of the solve that kept it. 0: nobody is to begin from anything */
+uint64_t Guess::number(Question asked) const
 {
-  const bool warm = given.velocities ? memory->history && memory->global.solutions > 0.0
-                                     : settings.warm_start;
+  if (!settings.warm_start || asked == NOISY_MOTIONS) return 0;
+  uint64_t all = sd_hash_mix(memory->global.settings + (uint64_t) asked + 1), bits;
+  for (double of_shells : {shells.classes.smallest, shells.classes.unlike}) {
+    memcpy(&bits, &of_shells, sizeof(bits));
+    all = sd_hash_mix(all * SD_HASH_STEP + bits);
+  }
+  return all;
+}
+
+/* Solves of that number that follow one another, whose answers the memory has: 0, 1, 2 */
+double Guess::solves_kept(Question asked) const
+{
+  const uint64_t now = number(asked);
+  return now != 0 && now == memory->global.guess ? memory->global.solutions : 0.0;
+}
+
+Guess::Start Guess::none() const
+{
+  const size_t n = scene.size(), points = shells.settings.on() ? shells.first_of_rows()[n] : 0;
+  const std::vector<double> zeros(width() * (n + 1), 0.0);
+  return {false, shells.settings.on() ? std::vector<double>(3 * points + 3, 0.0) : zeros, zeros};
+}
+
+Guess::Start Guess::recall(Question asked) const
+{
+  if (solves_kept(asked) == 0.0) return none();
+  Start start = {true, {}, std::vector<double>(width() * (scene.size() + 1), 0.0)};
   if (shells.settings.on())
-    l = recall_points(memory->global.line);
-  else if (given.velocities && warm)
-    recall_forces();
-  else if (given.velocities)
-    l.assign(width() * (scene.size() + 1), 0.0);
+    start.l = recall_points(memory->global.line);
+  else if (asked == FORCES)
+    start.l = recall_forces();
   else
-    l = scene.rows((int) width(), [&](int i, double *out) {
-      for (size_t d = 0; d < width() && warm; d++)
-        out[d] = -memory->rows[i][State::at(State::FORCE, d)];
+    start.l = scene.rows((int) width(), [&](int i, double *out) {
+      for (size_t d = 0; d < width(); d++) out[d] = -memory->rows[i][State::at(State::FORCE, d)];
     });
-  if (!given.velocities) recall_motions();
-  return warm;
+  if (asked == MOTIONS && settings.lubrication.on) start.v = recall_motions();
+  return start;
 }
 
-void Guess::keep(const std::vector<double> &exerted)
+void Guess::keep(Question asked, const Solve &found)
 {
-  found.take(epochs.step);
-  if (given.velocities)
-    keep_perturbation(exerted);
+  State::Global &global = memory->global;
+  const double kept = solves_kept(asked);
+  if (asked == FORCES)
+    keep_perturbation(found.exerted);
   else
-    keep_motions();
+    keep_motions(found.v_with_l);
   if (shells.settings.on() && scene.anybody_sees())
-    keep_points();
-  else if (!shells.settings.on() && !given.velocities)
-    scene.to_atoms((int) width(), l.data(), [&](int i, const double *row) {
+    keep_points(found.l, kept > 1.0);
+  else if (!shells.settings.on() && asked != FORCES)
+    scene.to_atoms((int) width(), found.l.data(), [&](int i, const double *row) {
       for (size_t d = 0; d < width(); d++)
         memory->rows.row(i)[State::at(State::FORCE, d)] = -row[d];
     });
+  global.guess = number(asked);
+  global.solutions = std::min(2.0, kept + 1.0);
 }
 
 // --- where velocities are given --------------------------------------------------------------------
@@ -59,11 +88,11 @@ void Guess::keep(const std::vector<double> &exerted)
 /* F = D (s + v') with the v' of the last solve, or on the line through the last two. Made from v'
  * and not from F, the guess has the slip of now: it is exact for spheres that nobody disturbs, at
  * any tolerance. */
-void Guess::recall_forces()
+std::vector<double> Guess::recall_forces() const
 {
   const size_t m = width();
-  const bool line = memory->global.solutions > 1;
-  l = scene.rows((int) m, [&](int i, double *out) {
+  const bool line = memory->global.solutions > 1.0;
+  std::vector<double> l = scene.rows((int) m, [&](int i, double *out) {
     const double *row = memory->rows[i], *before = row + memory->before();
     for (size_t d = 0; d < m; d++) {
       const double last = row[State::at(State::VPRIME, d)];
@@ -72,6 +101,7 @@ void Guess::recall_forces()
   });
   for (size_t j = 0; j < m * scene.size(); j++)
     l[j] = -(bodies.resistance[j] * (bodies.flow[j] + l[j]));
+  return l;
 }
 
 /* v' = D^-1 F - s of the solution, and what the next guess is made of. Spheres that see nobody have
@@ -79,7 +109,6 @@ void Guess::recall_forces()
 void Guess::keep_perturbation(const std::vector<double> &exerted)
 {
   const size_t m = width();
-  State::Global &global = memory->global;
   std::vector<double> perturbed(m * scene.size() + m, 0.0);
   for (size_t k = 0; k < (size_t) scene.size(); k++)
     for (size_t j = m * k; j < m * (k + 1) && !scene.alone((int) k); j++)
@@ -92,26 +121,25 @@ void Guess::keep_perturbation(const std::vector<double> &exerted)
       last = now[d];
     }
   });
-  global.solutions = std::min(2.0, global.solutions + 1.0);
 }
 
 // --- where loads are given -------------------------------------------------------------------------
 
-/* Velocities stand in the place of v', which has no other use in such a run. */
-void Guess::recall_motions()
+/* Velocities stand in the place of v', which has no other use in such a run; films alone ask for them. */
+std::vector<double> Guess::recall_motions() const
 {
   const size_t m = width();
   const double line = shells.settings.on() ? memory->global.line : 0.0;
-  v = scene.rows((int) m, [&](int i, double *out) {
+  return scene.rows((int) m, [&](int i, double *out) {
     const double *row = memory->rows[i], *before = row + memory->of_motion_before();
-    for (size_t d = 0; d < m && settings.warm_start; d++) {
+    for (size_t d = 0; d < m; d++) {
       out[d] = row[State::at(State::VPRIME, d)];
       if (line != 0.0) out[d] += line * (out[d] - before[d]);
     }
   });
 }
 
-void Guess::keep_motions()
+void Guess::keep_motions(const std::vector<double> &v)
 {
   const size_t m = width();
   scene.to_atoms((int) m, v.data(), [&](int i, const double *now) {
@@ -172,7 +200,7 @@ std::vector<double> Guess::recall_points(double line) const
   return found_then;
 }
 
-void Guess::keep_points()
+void Guess::keep_points(const std::vector<double> &l, bool line_is_known)
 {
   if (memory->points == 0) return;
   const int *first = shells.first_of_rows(), *kinds = shells.kinds_of_rows();
@@ -196,7 +224,7 @@ void Guess::keep_points()
     });
   }
   MPI_Allreduce(MPI_IN_PLACE, off, 2, MPI_DOUBLE, MPI_SUM, world);
-  memory->global.line = off[1] < off[0];
+  memory->global.line = line_is_known && off[1] < off[0];
 }
 
 }    // namespace StokesDyn

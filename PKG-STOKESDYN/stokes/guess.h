@@ -1,14 +1,13 @@
 /* What a solve begins from, and what it leaves for the next one: rows of the memory, which follow their
- * atoms through migration and restarts. Three kinds of numbers,
+ * atoms through migration and restarts. What is kept depends on what a solve was asked,
  *
- *   loads     forces of the points on the fluid; of shells those of their points, in the axes of the
- *             shell, so that they turn with it
- *   motions   where velocities are given what others add to the drag, v' = F/D - s; where loads are,
- *             with films, the velocities that were found
- *   line      the same of the solve before the last one, where the line through both is a better guess
+ *   FORCES    what others add to the drag, v' = F/D - s, of the last two solves
+ *   MOTIONS   with films the velocities that were found; where spheres are points, their forces
+ *   of both   where spheres are shells the forces of their points on the fluid, of the last two solves, in
+ *             the axes of the shell, so that they turn with it
  *
- * and one rule of how long they stand: l is of the solve of a step while Epochs::step is that of
- * keep(), by its rows; later only the memory is. */
+ * and stands for as long as one number does, that of all that it follows from: number(). Nobody else decides
+ * that a guess is stale. */
 #ifndef SD_GUESS_H
 #define SD_GUESS_H
 
@@ -17,51 +16,58 @@
 #include "pointers.h"
 #include "settings.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace StokesDyn {
 
+class Solve;
+
 class Guess : protected LAMMPS_NS::Pointers {
  public:
-  Guess(LAMMPS_NS::LAMMPS *lmp, Scene &, const BodyScene &, const Given &, const Shells &,
-        const StokesSettings &);
+  /* Of all spheres forces, from their velocities; motions, from loads; or these with new random numbers,
+   * which leave nothing to begin from and are no guess of anything */
+  enum Question { FORCES, MOTIONS, NOISY_MOTIONS };
+
+  /* l: forces of the points on the fluid, v: with films velocities of the spheres, both by rows, as the core
+   * has them (sd_bodies_motion); zeros unless the solve is to begin from them, warm */
+  struct Start {
+    bool warm;
+    std::vector<double> l, v;
+  };
+
+  Guess(LAMMPS_NS::LAMMPS *lmp, Scene &, const BodyScene &, const Shells &, const StokesSettings &);
   /* that of the step: Hydrodynamics::begin */
   FixStokesDynamicsState *memory = nullptr;
 
-  /* By rows, as the core has them (sd_bodies_motion): forces of the points on the fluid, and with films
-   * velocities of the spheres. In: a guess; out: what was found. */
-  std::vector<double> l, v;
-
-  /* Before a solve: from the memory. Returns whether there is anything to begin from. */
-  bool recall();
-  /* After it: to the memory. exerted [width spheres]: forces of the spheres on the fluid */
-  void keep(const std::vector<double> &exerted);
+  /* Before a solve: from the memory, if it stands */
+  Start recall(Question asked) const;
+  /* Nothing to begin from */
+  Start none() const;
+  /* After it: to the memory */
+  void keep(Question asked, const Solve &found);
   /* A sphere turns with its clump by the rotation matrix R, and so does what the next solve begins
    * from. */
   void turn(int i, const double R[9]);
 
-  /* With shells: is l that of this step's solve? The forces of the points, of it or the last one */
-  bool found_now() const { return found.is(epochs.step); }
-  /* In a step that is solved elsewhere too: so it is now, though nothing is kept of it. */
-  void found_in_passing() { found.take(epochs.step); }
-  std::vector<double> points_now() const { return found_now() ? l : recall_points(0.0); }
+  /* Of shells, forces of the points as the last solve left them, whatever it was asked */
+  std::vector<double> points_of_last_solve() const { return recall_points(0.0); }
 
  private:
   Scene &scene;
   const BodyScene &bodies;
-  const Given &given;
   const Shells &shells;
   const StokesSettings &settings;
-  const Epochs &epochs;
-  Since found;
 
   size_t width() const { return settings.scene.rotation ? 6 : 3; }
-  void recall_forces();
-  void recall_motions();
+  uint64_t number(Question asked) const;
+  double solves_kept(Question asked) const;
+  std::vector<double> recall_forces() const;
+  std::vector<double> recall_motions() const;
   std::vector<double> recall_points(double line) const;
   void keep_perturbation(const std::vector<double> &exerted);
-  void keep_motions();
-  void keep_points();
+  void keep_motions(const std::vector<double> &v);
+  void keep_points(const std::vector<double> &l, bool line_is_known);
   void turn_points(std::vector<double> &l, bool back) const;
 };
 

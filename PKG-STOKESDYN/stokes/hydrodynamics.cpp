@@ -30,7 +30,7 @@ Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
     lubrication(voice, settings.lubrication, settings.shells),
     clump_poses(lmp, scene, ambient, rigid, given),
     bodies(lmp, scene, ambient, rigid, clump_poses, given, lubrication),
-    solver(lmp, scene, bodies, ambient, given, shells, settings), guard(voice)
+    solver(lmp, scene, bodies, ambient, shells, settings), guard(voice)
 {
 }
 
@@ -190,7 +190,7 @@ void Hydrodynamics::solve()
   sd_solve_report report = {};
   const sd_status status = scene.anybody_sees() ? find_forces(report) : SD_OK;
   judge(status, report);
-  solver.keep();
+  solver.keep(Guess::FORCES);
 }
 
 void Hydrodynamics::velocities(const Solve::Take &take, const Given &known, double drawn)
@@ -207,10 +207,10 @@ void Hydrodynamics::velocities(const Solve::Take &take, const Given &known, doub
       for (int i : solvers) memory->rows.give(i);
   } else
     status = find_motions(take, drawn, report);
-  // v' is none of this: a solve for forces begins from nothing.
+  // v' is none of this.
   global.last_step = update->ntimestep;
   global.last_solve = -1;
-  global.reported = global.solutions = 0;
+  global.reported = 0;
   judge(status, report);
 }
 
@@ -259,7 +259,7 @@ static std::string how_far(const sd_solve_report &report)
  * and from now on: a run is not stranded by its default. */
 sd_status Hydrodynamics::find_forces(sd_solve_report &report)
 {
-  const Solve::How how = {true, settings.tolerance, settings.max_iter};
+  const Solve::How how = {Guess::FORCES, settings.tolerance, settings.max_iter};
   if (!bodies.joined() && algorithm() == StokesSettings::SUBSTITUTION) {
     const sd_status status = solver.substitution(how, report);
     fail_if_alone(where(StokesSettings::SUBSTITUTION), status);
@@ -280,7 +280,7 @@ sd_status Hydrodynamics::find_forces(sd_solve_report &report)
   return status;
 }
 
-/* In one loop, with lubrication in it. New random numbers leave nothing to begin from. */
+/* In one loop, with lubrication in it */
 sd_status Hydrodynamics::find_motions(const Solve::Take &take, double drawn, sd_solve_report &report)
 {
   const bool noisy = drawn > 0.0;
@@ -291,8 +291,9 @@ sd_status Hydrodynamics::find_motions(const Solve::Take &take, double drawn, sd_
     solver.forget_noise();
     moments_left.clear();
   }
+  const Guess::Question asked = noisy ? Guess::NOISY_MOTIONS : Guess::MOTIONS;
   const sd_status status =
-      solver.run({!noisy, std::max(settings.tolerance, drawn), settings.max_iter}, report);
+      solver.run({asked, std::max(settings.tolerance, drawn), settings.max_iter}, report);
   clump_poses.moves(&solver.V[6 * bodies.first_clump()]);
   solver.hand_out(take);
   films_power.clear();
@@ -300,7 +301,7 @@ sd_status Hydrodynamics::find_motions(const Solve::Take &take, double drawn, sd_
     read_motion();
     find_films_power();
   }
-  solver.keep();
+  solver.keep(asked);
   return status;
 }
 

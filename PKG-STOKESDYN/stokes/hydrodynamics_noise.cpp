@@ -41,10 +41,8 @@ void Hydrodynamics::stress_of_noise(double tolerance, std::vector<double> &of_at
 {
   sd_solve_report report = {};
   solver.push_alone();
-  const sd_status status =
-      solver.run({false, std::max(settings.tolerance, tolerance), settings.max_iter}, report);
-  judge(status, report);
-  solver.guess.found_in_passing();
+  const double loosest = std::max(settings.tolerance, tolerance);
+  judge(solver.run({Guess::NOISY_MOTIONS, loosest, settings.max_iter}, report), report);
   stress(of_atoms);
 }
 

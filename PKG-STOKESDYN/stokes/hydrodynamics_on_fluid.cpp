@@ -68,12 +68,12 @@ Hydrodynamics::Points Hydrodynamics::points_that_stand() const
 /* Where no solve was needed in this step the rows of the scene may be those of another one. */
 Hydrodynamics::Points Hydrodynamics::points_of_now()
 {
-  if (memory->points == 0 && !solver.guess.found_now())
+  if (memory->points == 0 && !solver.found_now())
     voice.at_step().fail("the forces of the points are not kept with warm_start no; use warm_start "
                          "yes");
   stand_rows();
   Points now = points_that_stand();
-  now.l = solver.guess.points_now();
+  now.l = solver.points_now();
   return now;
 }
 

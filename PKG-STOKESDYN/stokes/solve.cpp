@@ -9,9 +9,9 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-Solve::Solve(LAMMPS *lmp, Scene &scene, BodyScene &bodies, const Ambient &ambient, const Given &given,
-             const Shells &shells, const StokesSettings &settings) :
-    Pointers(lmp), preconditioner(lmp, scene), guess(lmp, scene, bodies, given, shells, settings), scene(scene),
+Solve::Solve(LAMMPS *lmp, Scene &scene, BodyScene &bodies, const Ambient &ambient, const Shells &shells,
+             const StokesSettings &settings) :
+    Pointers(lmp), preconditioner(lmp, scene), guess(lmp, scene, bodies, shells, settings), scene(scene),
     bodies(bodies), ambient(ambient)
 {
 }
@@ -19,7 +19,7 @@ Solve::Solve(LAMMPS *lmp, Scene &scene, BodyScene &bodies, const Ambient &ambien
 double Solve::memory_usage() const
 {
   double numbers = (double) room;
-  for (const auto *array : {&exerted, &v, &V, &F, &drag, &spin, &work, &slip, &pushed, &slip_left,
+  for (const auto *array : {&exerted, &v, &V, &l, &v_with_l, &F, &drag, &spin, &work, &slip, &pushed, &slip_left,
                             &load_left, &wandering})
     numbers += (double) array->capacity();
   return sizeof(double) * numbers + preconditioner.memory_usage();
@@ -29,26 +29,25 @@ double Solve::memory_usage() const
 
 sd_status Solve::run(const How &how, sd_solve_report &report)
 {
-  return solve_bodies(how, guess.recall() && how.warm, report);
+  found.take(scene.since().step);
+  return solve_bodies(how, guess.recall(how.asked), report);
 }
 
 sd_status Solve::resist(const std::vector<double> &motions, int max_iter, std::vector<double> &forces)
 {
   const size_t n = scene.size();
-  std::vector<double> found = exerted, l(sd_bodies_rows(&bodies.bodies) + 3), v(bodies.width * (n + 1));
+  std::vector<double> exerted_before = exerted, l_before = l, v_before = v_with_l;
   sd_solve_report unused = {};
-  guess.l.swap(l);
-  guess.v.swap(v);
   bodies.pass(motions, false);
-  const sd_status status = solve_bodies({false, 1e-2, max_iter}, false, unused);
+  const sd_status status = solve_bodies({Guess::FORCES, 1e-2, max_iter}, guess.none(), unused);
   for (size_t j = 0; j < bodies.width * n; j++) forces[j] = -exerted[j];
-  guess.l.swap(l);
-  guess.v.swap(v);
-  exerted.swap(found);
+  exerted.swap(exerted_before);
+  l.swap(l_before);
+  v_with_l.swap(v_before);
   return status;
 }
 
-sd_status Solve::solve_bodies(const How &how, bool warm, sd_solve_report &report)
+sd_status Solve::solve_bodies(const How &how, Guess::Start start, sd_solve_report &report)
 {
   const sd_bodies &A = bodies.bodies;
   V.resize(6 * sd_bodies_count(&A) + 6);
@@ -57,9 +56,10 @@ sd_status Solve::solve_bodies(const How &how, bool warm, sd_solve_report &report
   work.resize(sd_bodies_work(&A));
   const double *given = bodies.velocities.empty() ? nullptr : bodies.velocities.data();
   const sd_bodies_problem problem = {bodies.u.data(), bodies.F.data(), given,
-                                     warm,            how.tolerance,   how.max_iter};
-  const sd_bodies_motion motion = {guess.l.data(), guess.v.data(), V.data(), v.data(),
-                                   exerted.data()};
+                                     start.warm,      how.tolerance,   how.max_iter};
+  l = std::move(start.l);
+  v_with_l = std::move(start.v);
+  const sd_bodies_motion motion = {l.data(), v_with_l.data(), V.data(), v.data(), exerted.data()};
   sd_bodies_report made = {};
   const sd_status status = sd_bodies_solve(&A, &problem, &motion, work.data(), &made);
   fail_if_alone(Voice(lmp, StokesSettings::COMMAND).at_step(), status);
@@ -130,8 +130,9 @@ sd_status Solve::gradients(const How &how, sd_solve_report &report)
 {
   sd_system A = system();
   F.resize(bodies.flow.size() + bodies.width);
-  A.warm = guess.recall() && how.warm;
-  for (size_t j = 0; j < bodies.flow.size() && A.warm; j++) F[j] = -guess.l[j];
+  const Guess::Start start = guess.recall(how.asked);
+  A.warm = start.warm;
+  for (size_t j = 0; j < bodies.flow.size() && A.warm; j++) F[j] = -start.l[j];
   preconditioner.attach(A, guess.memory->places, guess.memory->global.places_box);
   const sd_status status = sd_solve_gradients(&A, bodies.flow.data(), how.tolerance, how.max_iter,
                                               F.data(), make_room(), &report);

@@ -31,14 +31,14 @@ namespace StokesDyn {
 
 class Solve : protected LAMMPS_NS::Pointers {
  public:
-  Solve(LAMMPS_NS::LAMMPS *lmp, Scene &, BodyScene &, const Ambient &, const Given &, const Shells &,
+  Solve(LAMMPS_NS::LAMMPS *lmp, Scene &, BodyScene &, const Ambient &, const Shells &,
         const StokesSettings &);
   Preconditioner preconditioner;
   Guess guess;
 
   struct How {
-    /* from what the memory holds, if there is anything; else from nothing */
-    bool warm;
+    /* the guess is of that */
+    Guess::Question asked;
     double tolerance;
     int max_iter;
   };
@@ -47,7 +47,7 @@ class Solve : protected LAMMPS_NS::Pointers {
   sd_status substitution(const How &how, sd_solve_report &report);
   sd_status gradients(const How &how, sd_solve_report &report);
   /* What was found to the memory */
-  void keep() { guess.keep(exerted); }
+  void keep(Guess::Question asked) { guess.keep(asked, *this); }
   /* [width spheres] forces on spheres that move so in a fluid at rest, within 1 %. What the last solve has
    * found stays. */
   sd_status resist(const std::vector<double> &motions, int max_iter, std::vector<double> &forces);
@@ -55,6 +55,12 @@ class Solve : protected LAMMPS_NS::Pointers {
   /* What was found: [width spheres] forces on the fluid, films included; velocities of the spheres (of
    * the images that the rows stand for), and [6 bodies] */
   std::vector<double> exerted, v, V;
+  /* Of run(): forces of the points on the fluid, and with films the velocities of the spheres that go with
+   * them in a guess */
+  std::vector<double> l, v_with_l;
+  /* Are they of this step? With shells: forces of the points, of this step or of the last solve */
+  bool found_now() const { return found.is(scene.since().step); }
+  std::vector<double> points_now() const { return found_now() ? l : guess.points_of_last_solve(); }
   /* What becomes of atom i: velocity, with torques angular velocity, and force of the fluid on it,
    * with torque: v and F [width] */
   using Take = ClumpPoses::Take;
@@ -105,6 +111,7 @@ class Solve : protected LAMMPS_NS::Pointers {
   Scene &scene;
   BodyScene &bodies;
   const Ambient &ambient;
+  Since found;
 
   /* by spheres: force of the fluid, what system() points to; scratch of sd_bodies */
   std::vector<double> F, drag, spin, work;
@@ -118,7 +125,7 @@ class Solve : protected LAMMPS_NS::Pointers {
   std::unique_ptr<double[]> scratch;
   size_t room = 0;
 
-  sd_status solve_bodies(const How &how, bool warm, sd_solve_report &report);
+  sd_status solve_bodies(const How &how, Guess::Start start, sd_solve_report &report);
   double *make_room();
   void take_forces();
   std::vector<double> numbers(const sd_random_key &of_spheres) const;

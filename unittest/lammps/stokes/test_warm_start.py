@@ -122,3 +122,24 @@ def test_warm_start_survives_a_restart(simulation, tmp_path, precondition, molec
     sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", "timestep 0.002"] + rest)
     sim.run(40)
     assert np.abs(np.hstack([sim.x, sim.v, sim.drag]) - expected).max() < 1e-10
+
+
+# What a solve was asked before, of the same spheres: forces from velocities that are nearly those asked for then; motions with
+# random numbers that are small
+ASKED_BEFORE = {"forces": ["fix before all stokes_dynamics apply no"],
+                "noise": ["fix before all stokes_dynamics/overdamped scheme midpoint temperature 1e-5 7 noise_tolerance 0.1"]}
+
+
+@pytest.mark.parametrize("before", ASKED_BEFORE)
+def test_what_a_solve_was_asked_before_is_no_guess_of_other_questions(simulation, before):
+    """At a loose tolerance the answer shows where the solver began: it does so from nothing, as without a run before."""
+    x = np.array([(0, 0, 0), (2.3, 0, 0), (0, 2.4, 0.3), (2.2, 2.3, 0.9)])
+    words = f"cut_off_distance inf visc {ETA} multiblob 12 lubrication yes relative_tolerance 0.05"
+    pull, move = "fix pull all addforce 0.3 0.1 -1", "fix move all stokes_dynamics/overdamped"
+    fresh = simulation(Spheres(x), words, fix=False).commands([pull, move, "run 0"])
+    expected, spin = fresh.v, fresh.atom("omega")
+    sim = simulation(Spheres(x, v=expected), words, fix=False)
+    for i in range(4):
+        sim.set("omega", i + 1, spin[i])
+    sim.commands([pull] + ASKED_BEFORE[before] + ["run 0", "unfix before", move, "run 0"])
+    assert np.array_equal(sim.v, expected) and np.array_equal(sim.atom("omega"), spin)
