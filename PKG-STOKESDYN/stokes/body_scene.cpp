@@ -240,7 +240,7 @@ void BodyScene::find_known()
   const size_t count = loner.size() + shaped.size();
   known.assign(count + 1, given.velocities ? SD_BODY_HELD : SD_BODY_FREE);
   velocities.clear();
-  if (given.velocities || given.held) bodies.held = known.data();
+  if (given.velocities || given.held) bodies.known = known.data();
   if (given.velocities || !given.held) return;
   velocities.assign(6 * count + 6, 0.0);
   std::vector<double> rows = scene.rows(7, [this](int i, double *out) { out[6] = given.held(i, out); });

@@ -28,7 +28,7 @@ template <int WIDTH> void ClumpPoses::gather(const std::vector<RigidClumps::Body
   const size_t n = rigid.members().size(), flows = WIDTH == COLUMNS ? 3 * n : 0;
   for (auto *numbers : {&spheres.eta, &spheres.radius}) numbers->resize(n + 1);
   spheres.x.resize(3 * n + 3);
-  for (auto *vectors : {&spheres.motion, &spheres.turning}) vectors->resize(moving ? 3 * n + 3 : 0);
+  for (auto *vectors : {&spheres.v, &spheres.omega}) vectors->resize(moving ? 3 * n + 3 : 0);
   loads.assign(moving ? 0 : 6 * all.size(), 0.0);
   spheres.flow.resize(flows);
   spheres.gradient.resize(3 * flows);
@@ -36,10 +36,10 @@ template <int WIDTH> void ClumpPoses::gather(const std::vector<RigidClumps::Body
     out[ETA] = ambient.active()[i] ? ambient.viscosity(i) : 0.0;
     out[RADIUS] = atom->radius[i];
     if (!moving)
-      given.load(i, out + MOTION);
+      given.load(i, out + LOAD);
     else {
-      copy<3>(atom->v[i], out + MOTION);
-      if (turns) copy<3>(atom->omega[i], out + TURNING);
+      copy<3>(atom->v[i], out + VELOCITY);
+      if (turns) copy<3>(atom->omega[i], out + OMEGA);
     }
     if (WIDTH < COLUMNS) return;
     copy<3>(ambient.velocity(i), out + FLOW);
@@ -59,11 +59,11 @@ template <int WIDTH> void ClumpPoses::gather(const std::vector<RigidClumps::Body
     spheres.radius[k] = of[RADIUS];
     copy<3>(&scene.whole.x[3 * m], &spheres.x[3 * (size_t) k]);
     if (!moving)
-      add_load(&scene.whole.x[3 * m], of + MOTION);
+      add_load(&scene.whole.x[3 * m], of + LOAD);
     else {
-      copy<3>(of + MOTION, &spheres.motion[3 * (size_t) k]);
-      copy<3>(of + TURNING, &spheres.turning[3 * (size_t) k]);
-      if (jumps) sd_add_edges(jumps, steps, &spheres.motion[3 * (size_t) k]);
+      copy<3>(of + VELOCITY, &spheres.v[3 * (size_t) k]);
+      copy<3>(of + OMEGA, &spheres.omega[3 * (size_t) k]);
+      if (jumps) sd_add_edges(jumps, steps, &spheres.v[3 * (size_t) k]);
     }
     if (WIDTH < COLUMNS) return;
     copy<3>(of + FLOW, &spheres.flow[3 * (size_t) k]);
@@ -164,8 +164,8 @@ sd_clump_motion ClumpPoses::look_at(const Clump &clump) const
   const size_t at = 3 * (size_t) body(clump).begin;
   sd_clump_motion m = {};
   m.x = &spheres.x[at];
-  m.v = given.velocities ? &spheres.motion[at] : nullptr;
-  m.omega = given.velocities && spins && shape(clump).shape.rank < 2 ? &spheres.turning[at] : nullptr;
+  m.v = given.velocities ? &spheres.v[at] : nullptr;
+  m.omega = given.velocities && spins && shape(clump).shape.rank < 2 ? &spheres.omega[at] : nullptr;
   std::copy_n(ambient.uniform_velocity(), 3, m.u_uniform);
   m.u = strains ? &spheres.flow[at] : nullptr;
   m.gradient = strains ? &spheres.gradient[3 * at] : nullptr;

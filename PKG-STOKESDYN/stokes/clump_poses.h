@@ -120,13 +120,14 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
    * radius, place, velocity and angular velocity (empty: not given), fluid velocity and its gradient
    * (empty: uniform) */
   struct {
-    std::vector<double> eta, radius, x, motion, turning, flow, gradient;
+    std::vector<double> eta, radius, x, v, omega, flow, gradient;
   } spheres;
   /* [6] of each body, where loads are given: about its sphere 0 */
   std::vector<double> loads;
 
-  /* columns of a row from an atom; the last two kinds where the fluid is not uniform */
-  enum { ETA, RADIUS, MOTION, TURNING = MOTION + 3, FLOW = TURNING + 3, GRADIENT = FLOW + 3,
+  /* columns of a row from an atom: of its velocities or, where loads are given, of its load, which are six as
+   * well; the last two kinds where the fluid is not uniform */
+  enum { ETA, RADIUS, VELOCITY, OMEGA = VELOCITY + 3, LOAD = VELOCITY, FLOW = LOAD + 6, GRADIENT = FLOW + 3,
          COLUMNS = GRADIENT + 9 };
   template <int WIDTH> void gather(const std::vector<RigidClumps::Body> &all);
   void find_lone();

@@ -30,7 +30,7 @@ class Guess : protected LAMMPS_NS::Pointers {
   enum Question { FORCES, MOTIONS, NOISY_MOTIONS };
 
   /* l: forces of the points on the fluid, v: with films velocities of the spheres, both by rows, as the core
-   * has them (sd_bodies_motion); zeros unless the solve is to begin from them, warm */
+   * has them (sd_bodies_answer); zeros unless the solve is to begin from them, warm */
   struct Start {
     bool warm;
     std::vector<double> l, v;

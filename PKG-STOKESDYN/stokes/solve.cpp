@@ -59,9 +59,9 @@ sd_status Solve::solve_bodies(const How &how, Guess::Start start, sd_solve_repor
                                      start.warm,      how.tolerance,   how.max_iter};
   l = std::move(start.l);
   v_with_l = std::move(start.v);
-  const sd_bodies_motion motion = {l.data(), v_with_l.data(), V.data(), v.data(), exerted.data()};
+  const sd_bodies_answer answer = {l.data(), v_with_l.data(), V.data(), v.data(), exerted.data()};
   sd_bodies_report made = {};
-  const sd_status status = sd_bodies_solve(&A, &problem, &motion, work.data(), &made);
+  const sd_status status = sd_bodies_solve(&A, &problem, &answer, work.data(), &made);
   fail_if_alone(Voice(lmp, StokesSettings::COMMAND).at_step(), status);
   report = {};
   report.iterations = report.products = made.products;

@@ -153,7 +153,7 @@ std::vector<double> Solve::wander(const Draw &draw)
     double normals[6];
     sd_random_normals(&draw.of_differences, tag[b], 6, normals);
     for (size_t d = 0; d < 6; d++) {
-      const bool turning = d >= 3, free = !sd_bodies_given(&A, (int) b, (int) d) && (!turning || b >= lone);
+      const bool turning = d >= 3, free = !sd_bodies_velocity_known(&A, (int) b, (int) d) && (!turning || b >= lone);
       const bool leaves = domain->dimension == 2 && d >= 2 && d < 5;
       const double length = turning ? size[b] : 1.0;
       if (!free || leaves) continue;

@@ -23,7 +23,7 @@ typedef struct {
   /* x = (l, V), z = pre(r, 0), p: [rows + 6 bodies]; r, w: [rows] */
   sd_cg_vectors v;
   /* [6 bodies] the loads, and those with L V_inf, of the second line */
-  double *given, *f;
+  double *loads, *f;
   /* scratch: rows; spheres, twice; bodies, three times; of sd_bodies_alone */
   double *rows, *on_spheres, *bodies, *alone;
   int shells, guess_is_new;
@@ -147,14 +147,14 @@ static double tie_tolerance(const loop *c, double power)
   return fmax(a->first, fmin(a->loosest, a->first * sqrt(c->power.spent / power)));
 }
 
-/* given.V of what is not known of V */
+/* loads.V of what is not known of V */
 static double spent_by_loads(const loop *c, const double *V)
 {
   double sum[6] = {0.0};    /* six, none of which waits for the others */
   for (int b = 0; b < sd_bodies_count(c->A); b++)
     for (int d = 0; d < 6; d++)
-      if (!sd_bodies_given(c->A, b, d))
-        sum[d] += c->given[6 * (long) b + d] * V[6 * (long) b + d];
+      if (!sd_bodies_velocity_known(c->A, b, d))
+        sum[d] += c->loads[6 * (long) b + d] * V[6 * (long) b + d];
   return sum[0] + sum[1] + sum[2] + sum[3] + sum[4] + sum[5];
 }
 
@@ -216,10 +216,10 @@ static sd_status bodies_judge(void *ctx, const sd_cg_state *now, int *done)
 
 static void hold(const loop *c, double *V)
 {
-  const double *given = c->problem->given;
+  const double *known = c->problem->velocities;
   memset(V, 0, sizeof(double) * (size_t) motions(c));
-  for (long j = 0; given && j < motions(c); j++)
-    if (sd_bodies_given(c->A, (int) (j / 6), j % 6)) V[j] = given[j];
+  for (long j = 0; known && j < motions(c); j++)
+    if (sd_bodies_velocity_known(c->A, (int) (j / 6), j % 6)) V[j] = known[j];
 }
 
 /* x = pre(-u, F) of bodies for themselves, and their power; z is scratch */
@@ -275,19 +275,19 @@ static sd_status start_cold(loop *c)
   if (status == SD_OK && c->A->tie) {
     c->tie_tolerance = accuracy_of(c)->first;
     hold(c, motion_of(c, c->v.x));
-    status = pre(c, c->v.r, c->f, c->problem->given != NULL, c->v.x, motion_of(c, c->v.x));
+    status = pre(c, c->v.r, c->f, c->problem->velocities != NULL, c->v.x, motion_of(c, c->v.x));
   }
   return status == SD_OK ? find_residual(c) : status;
 }
 
 /* V of a guess, that of each body's first sphere */
-static void guess_motion(const loop *c, const double *before, double *V)
+static void guess_motion(const loop *c, const double *v_with_l, double *V)
 {
   const sd_rigid *K = &c->A->spheres;
   hold(c, V);
   for (int i = K->n - 1; i >= 0; i--) {
     const int b = K->whole ? K->whole[i] : i;
-    const double *v = before + 6 * (long) i, *arm = K->arm ? K->arm + 3 * (long) i : NULL;
+    const double *v = v_with_l + 6 * (long) i, *arm = K->arm ? K->arm + 3 * (long) i : NULL;
     double own[6];
     memcpy(own, v, sizeof(own));
     for (int d = 0; d < 3 && arm; d++) {
@@ -295,7 +295,7 @@ static void guess_motion(const loop *c, const double *before, double *V)
       own[d] -= v[3 + e] * arm[g] - v[3 + g] * arm[e];
     }
     for (int d = 0; d < 6; d++)
-      if (!sd_bodies_given(c->A, b, d)) V[6 * (long) b + d] = own[d];
+      if (!sd_bodies_velocity_known(c->A, b, d)) V[6 * (long) b + d] = own[d];
   }
 }
 
@@ -325,12 +325,12 @@ static sd_status repair(loop *c, double *guess)
 }
 
 /* From the guess, with a tie (l, V) */
-static sd_status start_warm(loop *c, const double *before)
+static sd_status start_warm(loop *c, const double *v_with_l)
 {
   const sd_bodies *A = c->A;
   double *guess = c->v.p;
   memcpy(guess, c->v.x, sizeof(double) * (size_t) sd_bodies_rows(A));
-  if (A->tie) guess_motion(c, before, motion_of(c, guess));
+  if (A->tie) guess_motion(c, v_with_l, motion_of(c, guess));
   sd_status status = repair(c, guess);
   if (status == SD_OK) status = start_alone(c);
   memcpy(c->v.x, guess, sizeof(double) * (size_t) (sd_bodies_rows(A) + (A->tie ? motions(c) : 0)));
@@ -383,13 +383,13 @@ static sd_status bodies_iterate(loop *c)
 static void take_loads(loop *c)
 {
   const sd_bodies *A = c->A;
-  sd_rigid_collect(&A->spheres, c->problem->F, sd_bodies_count(A), c->given);
+  sd_rigid_collect(&A->spheres, c->problem->F, sd_bodies_count(A), c->loads);
   for (int b = 0; b < sd_bodies_count(A); b++) {
     const sd_body_known known = sd_bodies_known(A, b);
     if (known == SD_BODY_SPUN || known == SD_BODY_PINNED)
-      memset(c->given + 6 * (long) b + (known == SD_BODY_SPUN ? 3 : 0), 0, 3 * sizeof(double));
+      memset(c->loads + 6 * (long) b + (known == SD_BODY_SPUN ? 3 : 0), 0, 3 * sizeof(double));
   }
-  memcpy(c->f, c->given, sizeof(double) * (size_t) motions(c));
+  memcpy(c->f, c->loads, sizeof(double) * (size_t) motions(c));
   if (!A->tie) return;
   const sd_rigid films = sd_bodies_films(A);
   sd_rigid_collect(&films, A->tie->L->carried, sd_bodies_count(A), c->bodies);
@@ -397,44 +397,44 @@ static void take_loads(loop *c)
 }
 
 /* The last pre(r, 0) is free, and without it free spheres would have their lone velocities. */
-static sd_status finish(loop *c, const sd_bodies_motion *motion)
+static sd_status finish(loop *c, const sd_bodies_answer *answer)
 {
   const sd_bodies *A = c->A;
   const long rows = sd_bodies_rows(A), loads = sd_bodies_loads(A);
   double *V = motion_of(c, c->v.x);
-  memcpy(motion->l, c->v.x, sizeof(double) * (size_t) rows);
-  if (A->tie) sd_rigid_move(&A->spheres, V, motion->before);
+  memcpy(answer->l, c->v.x, sizeof(double) * (size_t) rows);
+  if (A->tie) sd_rigid_move(&A->spheres, V, answer->v_with_l);
   take_motion(c);
-  memcpy(motion->V, V, sizeof(double) * (size_t) motions(c));
-  sd_rigid_move(&A->spheres, V, motion->v);
+  memcpy(answer->V, V, sizeof(double) * (size_t) motions(c));
+  sd_rigid_move(&A->spheres, V, answer->v);
   for (long j = 0; j < rows; j++) c->rows[j] = c->v.x[j] + c->v.z[j];
   if (A->points.whole)
-    sd_rigid_collect(&A->points, c->rows, A->spheres.n, motion->exerted);
+    sd_rigid_collect(&A->points, c->rows, A->spheres.n, answer->exerted);
   else
-    memcpy(motion->exerted, c->rows, sizeof(double) * (size_t) loads);
+    memcpy(answer->exerted, c->rows, sizeof(double) * (size_t) loads);
   if (!A->tie) return SD_OK;
   const sd_rigid films = sd_bodies_films(A);
   double *there = c->on_spheres + loads;
   sd_rigid_move(&films, V, there);
   const sd_status status = sd_lubrication_apply(A->tie->L, there, c->on_spheres);
   for (long j = 0; j < loads; j++)
-    motion->exerted[j] += c->on_spheres[j] - A->tie->L->carried[j];
+    answer->exerted[j] += c->on_spheres[j] - A->tie->L->carried[j];
   return status;
 }
 
 sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
-                          const sd_bodies_motion *motion, double *work, sd_bodies_report *report)
+                          const sd_bodies_answer *answer, double *work, sd_bodies_report *report)
 {
   const long rows = sd_bodies_rows(A), bodies = 6 * (long) sd_bodies_count(A), size = rows + bodies;
-  double *r = work + 3 * size, *given = r + 3 * rows, *on_spheres = given + 5 * bodies;
+  double *r = work + 3 * size, *by_bodies = r + 3 * rows, *on_spheres = by_bodies + 5 * bodies;
   loop c = {
       .A = A,
       .problem = problem,
       .v = {work, work + size, work + 2 * size, r, r + rows},
       .rows = r + 2 * rows,
-      .given = given,
-      .f = given + bodies,
-      .bodies = given + 2 * bodies,
+      .loads = by_bodies,
+      .f = by_bodies + bodies,
+      .bodies = by_bodies + 2 * bodies,
       .on_spheres = on_spheres,
       .alone = on_spheres + 12 * (long) A->spheres.n,
       .shells = sd_bodies_shells(A),
@@ -443,13 +443,13 @@ sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
   };
   *report = (sd_bodies_report){.curvature = 1.0};
   memset(work, 0, sizeof(double) * (size_t) (2 * size));
-  if (problem->warm) memcpy(c.v.x, motion->l, sizeof(double) * (size_t) rows);
+  if (problem->warm) memcpy(c.v.x, answer->l, sizeof(double) * (size_t) rows);
   sd_status status = A->tie ? sd_tie_make(A) : SD_OK;
   if (status != SD_OK) return status;
   take_loads(&c);
-  status = problem->warm ? start_warm(&c, motion->before) : start_cold(&c);
+  status = problem->warm ? start_warm(&c, answer->v_with_l) : start_cold(&c);
   if (status == SD_OK) status = bodies_iterate(&c);
   if (status != SD_OK && status != SD_EMAXITER) return status;
-  const sd_status last = finish(&c, motion);
+  const sd_status last = finish(&c, answer);
   return last == SD_OK ? status : last;
 }

@@ -58,8 +58,8 @@ typedef struct {
   const double *F;
   /* [6 bodies] velocities of those held, W of those spun, U of those pinned; others' are not read.
    * NULL: they rest */
-  const double *given;
-  /* does l (with a tie, and before) hold a guess? Any will do: what it lacks of F is made up */
+  const double *velocities;
+  /* does l (with a tie, and v_with_l) hold a guess? Any will do: what it lacks of F is made up */
   int warm;
   /* max_iter: of products */
   double tolerance;
@@ -72,13 +72,13 @@ typedef struct {
    * again */
   double *l;
   /* with a tie, [spheres]: the velocities that go with l in a guess */
-  double *before;
+  double *v_with_l;
   /* [6 bodies] U of the centre, W; [spheres] velocities of the spheres */
   double *V, *v;
   /* [spheres] what each sphere exerts on the fluid in all, through its points and by lubrication:
    * over the spheres of a body it adds up to the load, or to what holds it */
   double *exerted;
-} sd_bodies_motion;
+} sd_bodies_answer;
 
 typedef struct {
   /* with M; residual: sqrt(r.z / e) */
@@ -91,11 +91,11 @@ typedef struct {
 /* Doubles of scratch. */
 long sd_bodies_work(const sd_bodies *A);
 
-/* work [sd_bodies_work]. On all ranks together. SD_OK; SD_EMAXITER: motion is the best that there
+/* work [sd_bodies_work]. On all ranks together. SD_OK; SD_EMAXITER: the answer is the best that there
  * is; SD_EINDEFINITE: p.w <= 0, as a cut-off makes it; SD_ENOTFINITE; that of sd_tie.h, or of a
  * function of the caller. */
 sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
-                          const sd_bodies_motion *motion, double *work, sd_bodies_report *report);
+                          const sd_bodies_answer *answer, double *work, sd_bodies_report *report);
 
 /* Clumps with shells are carried by a strain otherwise than as spheres: adds K dE E to the flow u
  * [points] at their points. gradient [9 shaped]: of the fluid velocity over each body of a shape.

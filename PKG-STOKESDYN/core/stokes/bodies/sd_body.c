@@ -141,9 +141,9 @@ void sd_bodies_alone(const sd_bodies *A, const double *r, const double *f, doubl
     for (int d = 0; d < w; d++) {
       const long j = (long) w * A->loner[e] + d, of = 6 * (long) e + d;
       const double slip = r ? r[j] : 0.0, load = f ? f[of] : 0.0;
-      const int given = sd_bodies_given(A, e, d);
-      l[j] = given ? A->D[j] * (slip + V[of]) : load;
-      if (!given) V[of] = load / A->D[j] - slip;
+      const int known = sd_bodies_velocity_known(A, e, d);
+      l[j] = known ? A->D[j] * (slip + V[of]) : load;
+      if (!known) V[of] = load / A->D[j] - slip;
     }
   for (int b = 0; b < A->shaped; b++) {
     const long of = 6 * (long) (A->lone + b);

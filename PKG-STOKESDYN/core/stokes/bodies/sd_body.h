@@ -41,7 +41,7 @@ typedef struct {
   int shaped;
   const sd_body *body;
   /* [bodies] sd_body_known; NULL: all are free */
-  const char *held;
+  const char *known;
   /* Spheres on bodies: width 6, in the model without torques 3. Points on spheres: whole NULL: the
    * spheres are the points, of equal width */
   sd_rigid spheres, points;
@@ -67,10 +67,10 @@ static inline int sd_bodies_count(const sd_bodies *A)
 }
 static inline sd_body_known sd_bodies_known(const sd_bodies *A, int b)
 {
-  return A->held ? (sd_body_known) A->held[b] : SD_BODY_FREE;
+  return A->known ? (sd_body_known) A->known[b] : SD_BODY_FREE;
 }
-/* Is number d of the body's velocity given, and that of its load unknown? */
-static inline int sd_bodies_given(const sd_bodies *A, int b, int d)
+/* Is number d of the velocity of the body known, and that of its load not? */
+static inline int sd_bodies_velocity_known(const sd_bodies *A, int b, int d)
 {
   const sd_body_known known = sd_bodies_known(A, b);
   return known == SD_BODY_HELD || (known == SD_BODY_SPUN && d >= 3) ||

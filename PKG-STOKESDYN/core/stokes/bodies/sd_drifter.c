@@ -6,11 +6,11 @@
 #include "sd_linear.h"
 #include "sd_tie.h"
 
-static void keep_free(const sd_bodies *A, const double *given, double *v)
+static void keep_free(const sd_bodies *A, const double *known, double *v)
 {
   for (int b = 0; b < sd_bodies_count(A); b++)
     for (int d = 0; d < 6; d++)
-      if (sd_bodies_given(A, b, d)) v[6 * (long) b + d] = given ? given[6 * (long) b + d] : 0.0;
+      if (sd_bodies_velocity_known(A, b, d)) v[6 * (long) b + d] = known ? known[6 * (long) b + d] : 0.0;
 }
 
 /* Numbers of one point, about its own centre, and back */
@@ -121,7 +121,7 @@ sd_status sd_drifter_move(const sd_bodies *A, const sd_drifter *d, const sd_drif
     sd_rigid_collect(&films, A->tie->L->carried, bodies, borne);
     for (long j = 0; j < motions; j++) load[j] += borne[j];
   }
-  keep_free(A, push->given, of_points);
+  keep_free(A, push->velocities, of_points);
   sd_status status = bear_films(A, of_points, on_spheres, borne, load);
   if (status == SD_OK) status = add_response(A, push->tolerance, load, borne, of_points);
   sd_drifter_follow(A, d, push->y, noise);

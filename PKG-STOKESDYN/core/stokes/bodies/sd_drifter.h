@@ -37,11 +37,11 @@ void sd_drifter_follow(const sd_bodies *A, const sd_drifter *d, const double *y,
 void sd_drifter_spread(const sd_bodies *A, const sd_drifter *d, const double *v, double *l);
 
 /* Velocities of the fluid and random ones at the points, forces and random forces on the spheres
- * (NULL: 0); with a tie, where sd_tie_make has been, to this tolerance of sd_tie_solve. given [6 bodies]
- * of those whose velocity is, NULL: they rest. v', v'' [6 bodies] out, velocities that are given among
+ * (NULL: 0); with a tie, where sd_tie_make has been, to this tolerance of sd_tie_solve. velocities [6 bodies]
+ * of those that have a known one, NULL: they rest. v', v'' [6 bodies] out, velocities that are given among
  * them. work [24 bodies + 12 spheres + points]. SD_OK; that of sd_tie_solve. */
 typedef struct {
-  const double *u, *y, *F, *f, *given;
+  const double *u, *y, *F, *f, *velocities;
   double tolerance;
 } sd_drifter_push;
 sd_status sd_drifter_move(const sd_bodies *A, const sd_drifter *d, const sd_drifter_push *push,

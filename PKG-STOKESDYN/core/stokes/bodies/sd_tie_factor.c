@@ -120,7 +120,7 @@ static void find_diagonal(const sd_bodies *A, assembly *a)
     const int out = is_zero(block);
     factor_own_block(A, b, H);
     for (int d = 0; d < 6; d++)
-      scale[d] = out || sd_bodies_given(A, b, d) ? 0.0 : 1.0 / sqrt(H[7 * d]);
+      scale[d] = out || sd_bodies_velocity_known(A, b, d) ? 0.0 : 1.0 / sqrt(H[7 * d]);
     for (int e = 0; e < 36; e++) H[e] += block[e];
     memset(block, 0, 36 * sizeof(double));
     add_scaled(H, scale, scale, block);

@@ -29,9 +29,9 @@ typedef struct {
   int row[FLOCK_MOST], whole[FLOCK_MOST], loner[FLOCK_MOST];
   sd_body clump[FLOCK_MOST];
   double arm[3 * FLOCK_MOST], D[6 * FLOCK_MOST];
-  char held[FLOCK_MOST];
+  char known[FLOCK_MOST];
   double l[6 * FLOCK_MOST], v[6 * FLOCK_MOST], u[6 * FLOCK_MOST], F[6 * FLOCK_MOST],
-      before[6 * FLOCK_MOST], exerted[6 * FLOCK_MOST], given[6 * FLOCK_MOST];
+      before[6 * FLOCK_MOST], exerted[6 * FLOCK_MOST], velocities[6 * FLOCK_MOST];
   /* V: of the clumps, behind the free spheres' in all_V */
   double all_V[6 * FLOCK_MOST], *V;
   sd_packed packed;
@@ -112,7 +112,7 @@ static inline sd_bodies flock_place(flock *f, int width)
                      .loner = f->loner,
                      .shaped = f->clumps,
                      .body = f->clump,
-                     .held = f->held,
+                     .known = f->known,
                      .spheres = {f->n, width, f->whole, f->arm},
                      .points = {f->n, width, NULL, NULL},
                      .D = f->D,
@@ -123,11 +123,11 @@ static inline sd_bodies flock_place(flock *f, int width)
 static inline sd_status flock_solve(flock *f, const sd_bodies *A, int warm, double tolerance,
                                     int max_iter)
 {
-  const sd_bodies_problem problem = {f->u, f->F, f->given, warm, tolerance, max_iter};
-  const sd_bodies_motion motion = {f->l, f->before, f->all_V, f->v, f->exerted};
+  const sd_bodies_problem problem = {f->u, f->F, f->velocities, warm, tolerance, max_iter};
+  const sd_bodies_answer answer = {f->l, f->before, f->all_V, f->v, f->exerted};
   double *work = malloc(sizeof(double) * (size_t) sd_bodies_work(A));
   for (long j = 0; j < sd_bodies_work(A); j++) work[j] = NAN; /* nobody may read it */
-  const sd_status status = sd_bodies_solve(A, &problem, &motion, work, &f->report);
+  const sd_status status = sd_bodies_solve(A, &problem, &answer, work, &f->report);
   free(work);
   return status;
 }

@@ -26,17 +26,17 @@ static inline int resting_solve(scene *s, const double *slip, int warm, double t
   }
   const sd_bodies A = {.lone = s->n,
                        .loner = row,
-                       .held = held,
+                       .known = held,
                        .spheres = {s->n, 3, row, NULL},
                        .points = {s->n, 3, NULL, NULL},
                        .D = D,
                        .apply = scene_apply,
                        .apply_ctx = s};
   const sd_bodies_problem problem = {slip, load, NULL, warm, tolerance, 3000};
-  const sd_bodies_motion motion = {l, NULL, V, v, exerted};
+  const sd_bodies_answer answer = {l, NULL, V, v, exerted};
   double *work = malloc(sizeof(double) * (size_t) sd_bodies_work(&A));
   sd_bodies_report report;
-  assert_int_equal(sd_bodies_solve(&A, &problem, &motion, work, &report), SD_OK);
+  assert_int_equal(sd_bodies_solve(&A, &problem, &answer, work, &report), SD_OK);
   for (size_t j = 0; j < size; j++) F[j] = -exerted[j];
   void *const all[] = {row, held, D, load, l, V, v, exerted, work};
   for (int k = 0; k < 9; k++) free(all[k]);

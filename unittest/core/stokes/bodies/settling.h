@@ -76,9 +76,9 @@ static inline void settling_shake(settling *s, uint64_t seed)
 
 static inline void settling_solve(settling *s, int warm, double tolerance)
 {
-  const sd_bodies_motion motion = {s->l, s->before, s->V, s->v, s->exerted};
+  const sd_bodies_answer answer = {s->l, s->before, s->V, s->v, s->exerted};
   const sd_bodies_problem problem = {s->u, s->F, NULL, warm, tolerance, 400};
-  assert_int_equal(sd_bodies_solve(&s->A, &problem, &motion, s->work, &s->report), SD_OK);
+  assert_int_equal(sd_bodies_solve(&s->A, &problem, &answer, s->work, &s->report), SD_OK);
 }
 
 /* |v - reference| / |reference| */

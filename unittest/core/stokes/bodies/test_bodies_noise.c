@@ -95,7 +95,7 @@ static void clumps_have_the_covariance_of_their_mobility(void **state)
     for (int held = SD_BODY_FREE; held <= SD_BODY_PINNED; held++) {
       flock *f = some(shell);
       const sd_bodies A = flock_place(f, 6);
-      f->held[0] = f->held[3] = (char) held; /* a free sphere and a clump */
+      f->known[0] = f->known[3] = (char) held; /* a free sphere and a clump */
       assert_true(worst_of(f, &A) < 1e-7);
       flock_free(f);
     }
@@ -139,7 +139,7 @@ static void films_take_their_part(void **state)
   assert_true(t->near.L.count > 0);
   assert_true(worst_of(f, &A) < 1e-7);
   for (int held = SD_BODY_SPUN; held <= SD_BODY_PINNED; held++) {
-    f->held[1] = f->held[2] = (char) held; /* a free sphere and a clump */
+    f->known[1] = f->known[2] = (char) held; /* a free sphere and a clump */
     assert_true(worst_of(f, &A) < 1e-7);
   }
   untie(t);

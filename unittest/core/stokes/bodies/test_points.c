@@ -39,8 +39,8 @@ typedef struct {
   int of_body[SPHERES];
   double x[ROWS], a[POINTS], arm[ROWS], D[ROWS], u[ROWS];
   int of_sphere[POINTS], row[POINTS];
-  double F[6 * SPHERES], given[6 * BODIES];
-  char held[BODIES];
+  double F[6 * SPHERES], velocities[6 * BODIES];
+  char known[BODIES];
   double w[POINTS];
   sd_packed packed;
   double l[ROWS], v[6 * SPHERES], V[6 * BODIES], exerted[6 * SPHERES];
@@ -102,7 +102,7 @@ static cloud *cloud_create(void)
     }
   }
   for (int j = 0; j < 6 * SPHERES; j++) s->F[j] = uniform(&seed, -20, 20);
-  for (int j = 0; j < 6 * BODIES; j++) s->given[j] = uniform(&seed, -1, 1);
+  for (int j = 0; j < 6 * BODIES; j++) s->velocities[j] = uniform(&seed, -1, 1);
   const sd_law law = {.tensor = SD_TENSOR_RPY};
   const sd_spheres spheres = {s->x, s->a, s->w};
   assert_int_equal(sd_packed_all(&s->packed, SD_ISA_BEST, &law, &spheres, POINTS, 3), SD_OK);
@@ -121,7 +121,7 @@ static sd_bodies cloud_bodies(cloud *s)
 {
   return (sd_bodies){.shaped = BODIES,
                      .body = s->body,
-                     .held = s->held,
+                     .known = s->known,
                      .spheres = {SPHERES, 6, s->of_body, s->spheres_arm},
                      .points = {POINTS, 3, s->of_sphere, s->arm},
                      .D = s->D,
@@ -132,11 +132,11 @@ static sd_bodies cloud_bodies(cloud *s)
 static void cloud_solve(cloud *s, double tolerance)
 {
   const sd_bodies A = cloud_bodies(s);
-  const sd_bodies_problem problem = {s->u, s->F, s->given, 0, tolerance, 100};
-  const sd_bodies_motion motion = {s->l, NULL, s->V, s->v, s->exerted};
+  const sd_bodies_problem problem = {s->u, s->F, s->velocities, 0, tolerance, 100};
+  const sd_bodies_answer answer = {s->l, NULL, s->V, s->v, s->exerted};
   double *work = malloc(sizeof(double) * (size_t) sd_bodies_work(&A));
   for (long j = 0; j < sd_bodies_work(&A); j++) work[j] = NAN;
-  assert_int_equal(sd_bodies_solve(&A, &problem, &motion, work, &s->report), SD_OK);
+  assert_int_equal(sd_bodies_solve(&A, &problem, &answer, work, &s->report), SD_OK);
   free(work);
 }
 
@@ -204,11 +204,11 @@ static void dense_solution(const cloud *s, double *V, double *f)
   onto_bodies(s, s->F, f);
   memcpy(H, R, sizeof(H));
   for (int p = 0; p < N; p++) {
-    V[p] = s->held[p / 6] ? s->given[p] : f[p] + C[p];
-    for (int q = 0; q < N && !s->held[p / 6]; q++)
-      if (s->held[q / 6]) V[p] -= R[N * p + q] * s->given[q];
+    V[p] = s->known[p / 6] ? s->velocities[p] : f[p] + C[p];
+    for (int q = 0; q < N && !s->known[p / 6]; q++)
+      if (s->known[q / 6]) V[p] -= R[N * p + q] * s->velocities[q];
     for (int q = 0; q < N; q++)
-      if (s->held[p / 6] || s->held[q / 6]) H[N * p + q] = p == q;
+      if (s->known[p / 6] || s->known[q / 6]) H[N * p + q] = p == q;
   }
   assert_int_equal(sd_cholesky_solve(N, H, 1, V), SD_OK);
   for (int p = 0; p < N; p++) {
@@ -236,7 +236,7 @@ static void spheres_of_points_move_as_the_dense_solution_says(void **state)
   cloud *s = cloud_create();
   for (int e = 0; e < 4; e++) {
     double V[6 * BODIES], f[6 * BODIES], exerted[6 * BODIES];
-    for (int b = 0; b < BODIES; b++) s->held[b] = who[e][b] == '1';
+    for (int b = 0; b < BODIES; b++) s->known[b] = who[e][b] == '1';
     cloud_solve(s, 1e-11);
     dense_solution(s, V, f);
     onto_bodies(s, s->exerted, exerted);
@@ -278,8 +278,8 @@ static void a_lone_sphere_of_points_has_its_own_drag(void **state)
     A.D = s->D + 3 * K * b;
     assert_true(sd_bodies_work(&A) < 10000);
     const sd_bodies_problem problem = {u, F, NULL, 0, 1e-10, 9};
-    const sd_bodies_motion motion = {l, NULL, V, v, exerted};
-    assert_int_equal(sd_bodies_solve(&A, &problem, &motion, work, &s->report), SD_OK);
+    const sd_bodies_answer answer = {l, NULL, V, v, exerted};
+    assert_int_equal(sd_bodies_solve(&A, &problem, &answer, work, &s->report), SD_OK);
     CHECK_NEAR(V[1] * 6.0 * SD_PI * ETA * a, 1.0, 1e-8);
     CHECK_NEAR(V[5] * 8.0 * SD_PI * ETA * a * a * a, 1.0, 1e-8);
     assert_int_equal(s->report.products, 1);
@@ -298,13 +298,13 @@ static void what_holds_bodies_is_what_moves_them(void **state)
   uint64_t seed = 17;
   for (int e = 0; e < 2; e++) {
     double loads[6 * BODIES];
-    memset(s->held, 0, sizeof(s->held));
+    memset(s->known, 0, sizeof(s->known));
     for (int j = 0; j < 6 * SPHERES; j++) s->F[j] = uniform(&seed, -20, 20);
     cloud_solve(s, 1e-11);
     memcpy(V[e], s->V, sizeof(s->V));
-    memcpy(s->given, s->V, sizeof(s->V));
+    memcpy(s->velocities, s->V, sizeof(s->V));
     onto_bodies(s, s->F, loads);
-    memset(s->held, 1, sizeof(s->held));
+    memset(s->known, 1, sizeof(s->known));
     memset(s->F, 0, sizeof(s->F)); /* not read */
     cloud_solve(s, 1e-11);
     onto_bodies(s, s->exerted, f[e]);

@@ -87,8 +87,8 @@ static void both_lines_hold(void **state)
     const int clump = 1, sphere = 3;
     const sd_body_known known[5] = {SD_BODY_FREE, SD_BODY_FREE, SD_BODY_HELD, SD_BODY_SPUN, SD_BODY_PINNED};
     const int first = e == 3 ? 3 : e < 2 ? 6 : 0, last = e == 4 ? 3 : 6; /* of what is given */
-    f->held[f->free + clump] = f->held[sphere] = (char) known[e];
-    for (int j = 0; j < 6 * bodies; j++) f->given[j] = uniform(&seed, -1, 1);
+    f->known[f->free + clump] = f->known[sphere] = (char) known[e];
+    for (int j = 0; j < 6 * bodies; j++) f->velocities[j] = uniform(&seed, -1, 1);
     tied_flock *t = tie_flock(f, 1e-4);
     assert_int_equal(tied_move(t, 0, 1e-12, 400), SD_OK);
     double *Ml = malloc(sizeof(double) * (size_t) N), *L = near_dense(&t->near);
@@ -106,8 +106,8 @@ static void both_lines_hold(void **state)
       if (!one || j % 6 < first || j % 6 >= last) CHECK_NEAR(got[j], want[j], 1e-7);
     }
     for (int j = first; j < last; j++) {
-      assert_true(f->V[6 * clump + j] == f->given[6 * (f->free + clump) + j]);
-      assert_true(f->all_V[6 * sphere + j] == f->given[6 * sphere + j]);
+      assert_true(f->V[6 * clump + j] == f->velocities[6 * (f->free + clump) + j]);
+      assert_true(f->all_V[6 * sphere + j] == f->velocities[6 * sphere + j]);
     }
     for (int i = 0; i < N; i++) total[i] -= lubrication[i]; /* what goes through the fluid of all */
     multiply_dense(t, total, Ml);

@@ -81,10 +81,10 @@ static void work(rank *r, const void *ctx)
   A.tie = &tie;
   A.world = rank_world(r);
   const sd_bodies_problem problem = {u, F, NULL, t->warm, t->tolerance, 400};
-  const sd_bodies_motion motion = {l, before, V, v, exerted};
+  const sd_bodies_answer answer = {l, before, V, v, exerted};
   sd_bodies_report report;
   if (sd_lubrication_place(&L, &scene) != SD_OK) r->all->failed = 1;
-  if (sd_bodies_solve(&A, &problem, &motion, s->work, &report) != SD_OK) r->all->failed = 1;
+  if (sd_bodies_solve(&A, &problem, &answer, s->work, &report) != SD_OK) r->all->failed = 1;
   rank_meet(r);
   for (int i = 0; i < r->n; i++)
     for (int d = 0; d < 6; d++) {

@@ -168,10 +168,10 @@ static inline sd_status move(blob_flock *f, const sd_bodies *A, const double *F,
                              double tolerance)
 {
   const sd_bodies_problem problem = {f->u, F, NULL, warm, tolerance, 200};
-  const sd_bodies_motion motion = {f->l, f->before, f->V, f->v, f->exerted};
+  const sd_bodies_answer answer = {f->l, f->before, f->V, f->v, f->exerted};
   double *work = malloc(sizeof(double) * (size_t) sd_bodies_work(A));
   for (long j = 0; j < sd_bodies_work(A); j++) work[j] = NAN; /* nobody may read it */
-  const sd_status status = sd_bodies_solve(A, &problem, &motion, work, &f->report);
+  const sd_status status = sd_bodies_solve(A, &problem, &answer, work, &f->report);
   free(work);
   return status;
 }
