@@ -27,7 +27,17 @@ void BodySteps::note(int i, const double *step)
   displaced = std::max(displaced, sd_dot(step, step) / (atom->radius[i] * atom->radius[i]));
 }
 
-// --- clumps --------------------------------------------------------------------------------------------------
+// --- a body --------------------------------------------------------------------------------------------------
+
+/* A sphere that is in no clump goes and turns by move [6]. beyond_box [3]: its displacement in a whole step, but
+ * for what it goes with the box; nullptr: this is part of a step */
+void BodySteps::step_lone(int i, const double *move, const double *beyond_box)
+{
+  for (int d = 0; d < 3; d++) atom->x[i][d] += move[d];
+  if (drives.is_held(i)) return;
+  directions.turn(i, move + 3, 1.0);
+  if (beyond_box) note(i, beyond_box);
+}
 
 BodySteps::Clumps BodySteps::clumps_now(const Hydrodynamics &hydro)
 {
@@ -86,13 +96,6 @@ void BodySteps::step_clumps(Hydrodynamics &hydro, const Clumps &from, const Step
 }
 
 // --- from where they stand -----------------------------------------------------------------------------------
-
-void BodySteps::go(int i, const double step[3], double weight, double scale, const double *noise)
-{
-  for (int d = 0; d < 3; d++) atom->x[i][d] += step[d];
-  note(i, step);
-  directions.step(i, update->dt, weight, scale, noise);
-}
 
 void BodySteps::go(Hydrodynamics &hydro, const Step &of_clump)
 {
@@ -155,10 +158,7 @@ void BodySteps::go(Hydrodynamics &hydro, const Ride &ride, const Places &there, 
     const double *v = &V.atoms[6 * i], beyond_box[3] = {ride.t * v[0], ride.t * v[1], ride.t * v[2]};
     double move[6];
     moved(drives.stays((int) i), v, &there.atoms[3 * i], &began.x.atoms[3 * i], move);
-    for (size_t d = 0; d < 3; d++) atom->x[i][d] += move[d];
-    if (drives.is_held((int) i)) continue;
-    directions.turn((int) i, move + 3, 1.0);
-    if (extent == WHOLE) note((int) i, beyond_box);
+    step_lone((int) i, move, extent == WHOLE ? beyond_box : nullptr);
   }
   if (!hydro.settings.rigid.on) return;
   const auto step = [&](size_t c) {

@@ -41,9 +41,8 @@ class BodySteps : protected LAMMPS_NS::Pointers {
 
   // --- from where they stand
 
-  /* A sphere that is in no clump. Its direction turns by W, whose change since the step before counts by
-   * weight, and by noise [3] times scale. */
-  void go(int i, const double step[3], double weight, double scale, const double *noise);
+  /* A sphere that is in no clump: a displacement and a turn, move [6] */
+  void go(int i, const double move[6]) { step_lone(i, move, move); }
   /* A displacement and a turn, move [6], of a point at centre [3] in the axes of the shape; place [3]:
    * where the centroid is put, for whoever wants that, else nullptr */
   struct ClumpStep {
@@ -123,6 +122,7 @@ class BodySteps : protected LAMMPS_NS::Pointers {
   void step_clump(const ClumpPoses &, const Clumps &from, size_t c, const ClumpStep &goes, const double *box,
                   std::vector<double> &x, const Give &give) const;
   void step_clumps(Hydrodynamics &, const Clumps &from, const Step &step, Extent extent);
+  void step_lone(int i, const double *move, const double *beyond_box);
   void note(int i, const double *step);
 };
 

@@ -66,14 +66,14 @@ void Directions::look(int i, const double W[3])
   if (any_moved) quaternion(i, row + 6);
 }
 
-void Directions::step(int i, double dt, double weight, double scale, const double *noise)
+void Directions::turn_of_step(int i, double dt, double weight, double scale, const double *noise, double w[3])
 {
+  std::fill_n(w, 3, 0.0);
   if (!on() || !turning.has(i)) return;
-  double *row = turning.row(i), w[3];
+  double *row = turning.row(i);
   sd_mean_velocity(3, row, row + 3, weight, w);
   for (int d = 0; d < 3; d++) w[d] = dt * w[d] + (scale > 0.0 ? scale * noise[d] : 0.0);
   std::copy_n(row, 3, row + 3);
-  turn(i, w, 1.0);
 }
 
 void Directions::turn(int i, const double W[3], double dt)

@@ -33,11 +33,12 @@ void FixStokesDynamicsOverdamped::move_free(const Hydrodynamics &hydro, int i)
   if (drives.is_held(i)) return;
   const double dt = update->dt, *V = motion[i];
   const double scale = noise.on() ? noise.scale(dt) : 0.0;
-  double old[6] = {V[0], V[1], V[2]}, mean[3], step[3];
+  double old[6] = {V[0], V[1], V[2]}, mean[3], move[6];
   if (before.has(i)) at_image(hydro, before[i], atom->x[i], old);
   sd_mean_velocity(3, V, old, weight(before.has(i)), mean);
-  for (int d = 0; d < 3; d++) step[d] = dt * mean[d] + (noise.on() ? scale * random[i][d] : 0.0);
-  steps.go(i, step, weight(before.has(i)), scale, random[i] + 3);
+  for (int d = 0; d < 3; d++) move[d] = dt * mean[d] + (noise.on() ? scale * random[i][d] : 0.0);
+  directions.turn_of_step(i, dt, weight(before.has(i)), scale, random[i] + 3, move + 3);
+  steps.go(i, move);
   double *row = before.give(i);
   copy<3>(V, row);
   copy<3>(atom->x[i], row + 6);
