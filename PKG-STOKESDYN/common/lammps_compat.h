@@ -86,41 +86,16 @@ namespace Compat {
 #endif
   }
 
-  inline void forward_comm(LAMMPS_NS::Comm *comm, LAMMPS_NS::Pair *pair)
-  {
+  /* of a pair style or a fix */
 #if SD_HAVE_COMM_THIS
-    comm->forward_comm(pair);
+  template <class Owner> void forward_comm(LAMMPS_NS::Comm *comm, Owner *of) { comm->forward_comm(of); }
+  template <class Owner> void reverse_comm(LAMMPS_NS::Comm *comm, Owner *of) { comm->reverse_comm(of); }
 #else
-    comm->forward_comm_pair(pair);
+  inline void forward_comm(LAMMPS_NS::Comm *comm, LAMMPS_NS::Pair *pair) { comm->forward_comm_pair(pair); }
+  inline void reverse_comm(LAMMPS_NS::Comm *comm, LAMMPS_NS::Pair *pair) { comm->reverse_comm_pair(pair); }
+  inline void forward_comm(LAMMPS_NS::Comm *comm, LAMMPS_NS::Fix *fix) { comm->forward_comm_fix(fix); }
+  inline void reverse_comm(LAMMPS_NS::Comm *comm, LAMMPS_NS::Fix *fix) { comm->reverse_comm_fix(fix); }
 #endif
-  }
-
-  inline void reverse_comm(LAMMPS_NS::Comm *comm, LAMMPS_NS::Pair *pair)
-  {
-#if SD_HAVE_COMM_THIS
-    comm->reverse_comm(pair);
-#else
-    comm->reverse_comm_pair(pair);
-#endif
-  }
-
-  inline void forward_comm(LAMMPS_NS::Comm *comm, LAMMPS_NS::Fix *fix)
-  {
-#if SD_HAVE_COMM_THIS
-    comm->forward_comm(fix);
-#else
-    comm->forward_comm_fix(fix);
-#endif
-  }
-
-  inline void reverse_comm(LAMMPS_NS::Comm *comm, LAMMPS_NS::Fix *fix)
-  {
-#if SD_HAVE_COMM_THIS
-    comm->reverse_comm(fix);
-#else
-    comm->reverse_comm_fix(fix);
-#endif
-  }
 
   /* the usual half list, each pair once, as newton says, or as if newton were off; instance: the
    * instance_me of the pair style */

@@ -14,9 +14,9 @@ namespace StokesDyn {
 void RowsOfAtoms::copy(int i, int j)
 {
   if (has(i))
-    std::copy_n((*this)[i], width, give(j));
+    std::copy_n((*this)[i], width, writable(j));
   else
-    take(j);
+    erase(j);
 }
 
 int RowsOfAtoms::pack(int i, double *buffer) const
@@ -30,14 +30,14 @@ int RowsOfAtoms::pack(int i, double *buffer) const
 int RowsOfAtoms::unpack(int i, const double *buffer)
 {
   if (buffer[0] == 0.0) {
-    take(i);
+    erase(i);
     return 1;
   }
-  std::copy_n(buffer + 1, width, give(i));
+  std::copy_n(buffer + 1, width, writable(i));
   return 1 + width;
 }
 
-double *AtomRows::give(int i)
+double *AtomRows::writable(int i)
 {
   if (has(i)) return rows[i];
   if (spare.empty()) {
@@ -51,7 +51,7 @@ double *AtomRows::give(int i)
   return rows[i];
 }
 
-void AtomRows::take(int i)
+void AtomRows::erase(int i)
 {
   if (!has(i)) return;
   spare.push_back(rows[i]);
@@ -71,7 +71,7 @@ double AtomRows::bytes() const
       sizeof(double) * (double) blocks.size() * width * ROWS_OF_A_BLOCK;
 }
 
-void AtomArray::take(int i)
+void AtomArray::erase(int i)
 {
   if (written[i]) std::fill_n(rows[i], width, 0.0);
   written[i] = 0;
@@ -138,7 +138,7 @@ void RowsFix::copy_arrays(int i, int j, int /*delflag*/)
 
 void RowsFix::set_arrays(int i)
 {
-  for (RowsOfAtoms *rows : kept) rows->take(i);
+  for (RowsOfAtoms *rows : kept) rows->erase(i);
 }
 
 int RowsFix::pack_exchange(int i, double *buf)

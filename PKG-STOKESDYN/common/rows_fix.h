@@ -24,8 +24,8 @@ class RowsOfAtoms {
   /* To read: zeros for an atom that has none. */
   virtual const double *operator[](int i) const = 0;
   /* To write: made of zeros if the atom has none. */
-  virtual double *give(int i) = 0;
-  virtual void take(int i) = 0;
+  virtual double *writable(int i) = 0;
+  virtual void erase(int i) = 0;
   virtual void grow(int nmax) = 0;
   virtual double bytes() const = 0;
 
@@ -49,8 +49,8 @@ class AtomRows final : public RowsOfAtoms {
   const double *operator[](int i) const override { return rows[i]; }
   /* To write: of an atom that has one. */
   double *row(int i) { return rows[i]; }
-  double *give(int i) override;
-  void take(int i) override;
+  double *writable(int i) override;
+  void erase(int i) override;
   void clear();
   void grow(int nmax) override { rows.resize(nmax, nothing.data()); }
   double bytes() const override;
@@ -77,12 +77,12 @@ class AtomArray final : public RowsOfAtoms {
   double **array() { return rows.data(); }
   bool has(int i) const override { return written[i]; }
   const double *operator[](int i) const override { return &block[(size_t) width * i]; }
-  double *give(int i) override
+  double *writable(int i) override
   {
     written[i] = 1;
     return &block[(size_t) width * i];
   }
-  void take(int i) override;
+  void erase(int i) override;
   void grow(int nmax) override;
   double bytes() const override { return (double) rows.capacity() * (sizeof(double) * width + 9); }
 
@@ -106,9 +106,9 @@ class RowsFix : public LAMMPS_NS::Fix {
 
   const Voice voice;
 
-  /* Has LAMMPS call back, when the constructor of the style is through: LAMMPS finds a callback by the
-   * place of its fix in the list, where one whose constructor fails never stands, so none of its could
-   * be taken back. */
+  /* Asks LAMMPS to call back, when the constructor of the style has ended well. LAMMPS finds a callback by
+   * the place of its fix in the list of fixes; a fix whose constructor fails never gets a place, so that its
+   * callbacks could not be taken back. */
   void listen();
   void grow_arrays(int) override;
   void copy_arrays(int, int, int) override;
@@ -129,9 +129,9 @@ class RowsFix : public LAMMPS_NS::Fix {
   {
     return Keywords(lmp, voice.command, words(narg, arg), 3);
   }
-  /* Once, in the constructor: what it keeps, with restarts also in their files. output, one of all
-   * or nullptr, becomes array_atom. With borders ghosts have rows, by pack_border. Those of `moving` follow
-   * their atoms as well, but are not in files: whoever has them writes them otherwise. */
+  /* Once, in the constructor. all: what it keeps; restarts: in restart files too. output: which of them is
+   * array_atom, or nullptr. WITH_BORDERS: ghosts have rows as well (pack_border). moving: rows that follow
+   * their atoms but are not in files; the fix writes them there in its own way, if at all. */
   enum Borders { NO_BORDERS, WITH_BORDERS };
   void keep(const std::vector<RowsOfAtoms *> &all, AtomArray *output, bool restarts,
             Borders borders = NO_BORDERS, const std::vector<RowsOfAtoms *> &moving = {});

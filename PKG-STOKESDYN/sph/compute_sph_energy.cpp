@@ -133,11 +133,11 @@ void FixSphEnergy::look_at_ends(bool counts)
   for (int i = 0; i < atom->nlocal; i++) {
     const bool was_there = flow.has(i);
     if (!(members.mask[i] & groupbit)) {
-      if (was_there) flow.take(i);
+      if (was_there) flow.erase(i);
       continue;
     }
     const double *row = &rows[COLUMNS * (size_t) i];
-    double *before = flow.give(i);
+    double *before = flow.writable(i);
     for (int c = 0; c < COLUMNS; c++) {
       now[c] += row[c];
       if (was_there)

@@ -93,7 +93,7 @@ void FixSphGrains::sum_fractions()
   std::vector<double> all = at_atoms(found, 1);
   reverse(all.data(), 1);
   for (int i = 0; i < atom->nlocal; i++)
-    if (all[i] != 0.0 || rows.has(i)) *rows.give(i) = all[i];
+    if (all[i] != 0.0 || rows.has(i)) *rows.writable(i) = all[i];
   recall();
 }
 
@@ -198,7 +198,7 @@ void FixSphGrains::setup(int vflag)
 void FixSphGrains::post_force(int /*vflag*/)
 {
   for (int i = 0; i < atom->nlocal; i++)
-    if (pair->is_particle(i)) shown.give(i)[0] = phi[i];
+    if (pair->is_particle(i)) shown.writable(i)[0] = phi[i];
   std::vector<double> F(3 * grains.size() + 1, 0.0), D = F;
   stresses(F);
   drags(F, D);
@@ -206,7 +206,7 @@ void FixSphGrains::post_force(int /*vflag*/)
   for (size_t j = 0; j < grains.size(); j++)
     for (int d = 0; d < 3; d++) {
       const double both = F[3 * j + d] + D[3 * j + d];
-      shown.give(grains[j])[1 + d] = both;
+      shown.writable(grains[j])[1 + d] = both;
       atom->f[grains[j]][d] += both;
       total[d] += both;
     }
@@ -222,7 +222,7 @@ void FixSphGrains::stresses(std::vector<double> &F)
     for (int d = 0; d < 3; d++) {
       forces[3 * (size_t) i + d] = sph[4 * (size_t) i + d];
       const double given = phi[i] * sph[4 * (size_t) i + d];
-      shown.give(i)[1 + d] = -given;
+      shown.writable(i)[1 + d] = -given;
       atom->f[i][d] -= given;
     }
   }
@@ -261,7 +261,7 @@ void FixSphGrains::drags(const std::vector<double> &F, std::vector<double> &D)
   sd_sph_grain_drag(&law, n, a.data(), u.data(), v.data(), rho.data(), at_grains.data(), wet.data(),
                     k.data());
   check_bodies(k);
-  for (int j = 0; j < n; j++) shown.give(grains[j])[0] = at_grains[j];
+  for (int j = 0; j < n; j++) shown.writable(grains[j])[0] = at_grains[j];
 
   const sd_sph_around list = around();
   sd_sph_grain_load(&list, weight.data(), k.data(), total_drag.data());
@@ -287,7 +287,7 @@ void FixSphGrains::give_back(const std::vector<double> &D)
   for (int i = 0; i < atom->nlocal; i++) {
     if (!pair->is_particle(i)) continue;
     for (int d = 0; d < 3; d++) {
-      shown.give(i)[1 + d] += all[3 * (size_t) i + d];
+      shown.writable(i)[1 + d] += all[3 * (size_t) i + d];
       atom->f[i][d] += all[3 * (size_t) i + d];
     }
   }

@@ -285,19 +285,19 @@ void FixSphInlet::find_speeds()
     else
       std::fill(speeds.begin(), speeds.end(), common_speed());
     for (int i = 0; i < atom->nlocal; i++)
-      if ((atom->mask[i] & groupbit) && marks[i][STATE] == DUE) marks.give(i)[SPEED] = speeds[i];
+      if ((atom->mask[i] & groupbit) && marks[i][STATE] == DUE) marks.writable(i)[SPEED] = speeds[i];
     return;
   }
   const auto stand_in = [this] {
     for (int i = 0; i < atom->nlocal; i++)
       if ((atom->mask[i] & groupbit) && marks[i][STATE] == DUE)
-        std::swap_ranges(atom->x[i], atom->x[i] + 3, marks.give(i) + PLACE);
+        std::swap_ranges(atom->x[i], atom->x[i] + 3, marks.writable(i) + PLACE);
   };
   stand_in();
   velocity.evaluate(lmp, igroup, speeds.data(), 1);
   stand_in();
   for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & groupbit) && marks[i][STATE] == DUE) marks.give(i)[SPEED] = speeds[i];
+    if ((atom->mask[i] & groupbit) && marks[i][STATE] == DUE) marks.writable(i)[SPEED] = speeds[i];
 }
 
 void FixSphInlet::move_layer()
@@ -319,7 +319,7 @@ void FixSphInlet::setup_pre_exchange()
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     mine += is_held(i);
-    if (!marks.has(i)) marks.give(i)[STATE] = is_held(i) ? IN_LAYER : REPLACED;
+    if (!marks.has(i)) marks.writable(i)[STATE] = is_held(i) ? IN_LAYER : REPLACED;
   }
   if (largest_of_all(world, mine) == 0)
     voice.fail("its layer is empty: fill it with particles of its group (create_atoms)");
@@ -333,7 +333,7 @@ void FixSphInlet::post_integrate()
 {
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    double *mark = marks.give(i);
+    double *mark = marks.writable(i);
     if (mark[STATE] == DUE)
       mark[PLACE + axis] -= side * update->dt * mark[SPEED];
     else if (mark[STATE] == IN_LAYER && !holds(atom->x[i])) {
@@ -354,7 +354,7 @@ std::vector<FixSphInlet::Newcomer> FixSphInlet::newcomers()
   std::vector<Newcomer> mine;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit) || marks[i][STATE] != DUE) continue;
-    double *mark = marks.give(i);
+    double *mark = marks.writable(i);
     Newcomer next = {mark[LEFT], (double) atom->tag[i], {mark[PLACE], mark[PLACE + 1], mark[PLACE + 2]},
                      mark[SPEED], atom->rho[i], atom->rmass ? atom->rmass[i] : 0.0,
                      atom->radius ? atom->radius[i] : 0.0, atom->type[i], atom->mask[i]};
@@ -391,7 +391,7 @@ void FixSphInlet::create(const Newcomer &like, tagint tag)
   atom->rho[i] = like.rho;
   if (atom->rmass) atom->rmass[i] = like.mass;
   if (atom->radius) atom->radius[i] = like.radius;
-  marks.give(i)[STATE] = IN_LAYER;
+  marks.writable(i)[STATE] = IN_LAYER;
 }
 
 void FixSphInlet::pre_exchange()

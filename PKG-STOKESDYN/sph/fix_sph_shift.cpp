@@ -37,19 +37,19 @@ int FixSphShift::pack_border(int n, int *list, double *buf)
 
 int FixSphShift::unpack_border(int n, int first, double *buf)
 {
-  for (int k = 0; k < n; k++) std::copy_n(buf + DU * k, DU, shifts.give(first + k));
+  for (int k = 0; k < n; k++) std::copy_n(buf + DU * k, DU, shifts.writable(first + k));
   return DU * n;
 }
 
 void FixSphShift::keep_rows(int n, const double *order, const double *kick)
 {
   const size_t columns = matrices ? 16 : 8;
-  for (int i = 0; i < n; i++) std::copy_n(order + columns * i + 4, DU, shifts.give(i));
-  for (int i = 0; i < atom->nlocal; i++) *wholes.give(i) = order[columns * i + 7];
+  for (int i = 0; i < n; i++) std::copy_n(order + columns * i + 4, DU, shifts.writable(i));
+  for (int i = 0; i < atom->nlocal; i++) *wholes.writable(i) = order[columns * i + 7];
   has_rows = 1.0;
   if (!matrices) return;
   for (int i = 0; i < atom->nlocal; i++) {
-    double *row = rest.give(i);
+    double *row = rest.writable(i);
     std::copy_n(order + columns * i + 8, 6, row);
     std::copy_n(kick + 3 * (size_t) i, 3, row + 6);
   }

@@ -359,7 +359,7 @@ void FixSphTension::show()
 {
   for (int i = 0; i < atom->nlocal; i++) {
     const double *n = &at_surface[4 * (size_t) i];
-    double *row = shown.give(i);
+    double *row = shown.writable(i);
     row[0] = kappa[i];
     row[1] = std::max(n[3], 0.0);
     std::copy_n(n, 3, row + 2);

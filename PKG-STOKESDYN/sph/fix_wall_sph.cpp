@@ -184,7 +184,7 @@ const double *FixWallAdamiSph::body_force(int i, const double v[3], double tau)
   const bool is_new = own_acceleration && !motion.has(i);
   // fix rigid and fix move give it its velocity after the setup
   if (!own_acceleration || (is_new && update->setupflag)) return gravity.now();
-  double *row = motion.give(i);
+  double *row = motion.writable(i);
   if (is_new) std::copy_n(v, 3, row);
   if (!update->setupflag) sd_sph_wall_acceleration(v, update->dt, tau, row, row + 3);
   for (int d = 0; d < 3; d++) b[d] = gravity.now()[d] - row[3 + d];

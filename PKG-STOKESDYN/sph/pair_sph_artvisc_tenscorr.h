@@ -65,9 +65,6 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair> {
   /* At the end of a step, when all forces are known: their friction, that of the estimated velocities,
    * becomes that of the velocities a time tau later (sd_sph_implicit.h). */
   void rub_implicitly(double tau);
-  /* rows of four numbers: those of this rank to ghosts; those of ghosts added to the owners' */
-  void share_rows(double *rows) { forward(rows, 4); }
-  void collect_rows(double *rows) { reverse(rows, 4); }
 
   /* For the SPH fixes. Pressures are those of the latest force. */
   double pressure(int i) const { return P[i]; }

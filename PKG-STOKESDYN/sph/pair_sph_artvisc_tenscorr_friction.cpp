@@ -63,22 +63,6 @@ void PairSph::look_at_friction()
 
 // --- implicit friction --------------------------------------------------------------------------------
 
-static void to_ghosts(void *ctx, double *rows)
-{
-  static_cast<PairSph *>(ctx)->share_rows(rows);
-}
-
-static void from_ghosts(void *ctx, double *rows)
-{
-  static_cast<PairSph *>(ctx)->collect_rows(rows);
-}
-
-static sd_status sum_over_ranks(void *ctx, double *values, int count)
-{
-  MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_SUM, *static_cast<MPI_Comm *>(ctx));
-  return SD_OK;
-}
-
 /* All that acts is in atom->f, on its owners; the lists, places and viscosities are those of the force of this
  * step. */
 void PairSph::rub_implicitly(double tau)
@@ -89,9 +73,13 @@ void PairSph::rub_implicitly(double tau)
   for (int i = 0; i < particles.n; i++) x4[4 * (size_t) i + 3] = 0.0;
   sd_world ranks = {};
   ranks.ctx = &world;
-  ranks.sum = sum_over_ranks;
-  const sd_sph_implicit all = {&model, &pairs, &particles, nlocal, inertia.data(), tau, &ranks, this, to_ghosts,
-                               from_ghosts};
+  ranks.sum = [](void *ctx, double *values, int count) {
+    MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_SUM, *static_cast<MPI_Comm *>(ctx));
+    return SD_OK;
+  };
+  const sd_sph_implicit all = {&model, &pairs, &particles, nlocal, inertia.data(), tau, &ranks, this,
+                               [](void *ctx, double *rows) { static_cast<PairSph *>(ctx)->forward(rows, 4); },
+                               [](void *ctx, double *rows) { static_cast<PairSph *>(ctx)->reverse(rows, 4); }};
   scratch.resize(sd_sph_implicit_size(&all));
   const sd_status status =
       sd_sph_rub_implicitly(&all, nlocal ? atom->v[0] : nullptr, nlocal ? atom->vest[0] : nullptr,

@@ -89,7 +89,7 @@ void SphOutputFix::grow_arrays(int nmax)
 
 void SphOutputFix::output(const double *numbers)
 {
-  for (int i = 0; i < atom->nlocal; i++) *values.give(i) = numbers[i];
+  for (int i = 0; i < atom->nlocal; i++) *values.writable(i) = numbers[i];
 }
 
 void BodyForce::parse(Keywords &in)

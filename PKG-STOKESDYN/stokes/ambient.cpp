@@ -249,7 +249,7 @@ void Ambient::select()
   const bool stands = group_stands();
   if (stands && !region) return;
   if (!stands) {
-    members_found.take(epochs.groups);
+    members_found.set(epochs.groups);
     members.clear();
     for (int i = 0; i < atom->nlocal; i++)
       if (atom->mask[i] & groupbit) members.push_back(i);

@@ -169,7 +169,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
   std::vector<char> takes_part;
   /* of the group, and those of them that are in the region */
   std::vector<int> members, those;
-  Since members_found;
+  Stamp members_found;
   double jump[6] = {0.0};
   bool jumping = false;
   double now = 0.0, later = 0.0, eta_uniform = 0.0, u_uniform[3] = {0.0, 0.0, 0.0};

@@ -62,7 +62,7 @@ void BodyScene::assemble(Films films)
   put_together();
   if (films != NO_FILMS) tie_films(films);
   find_known();
-  if (given.velocities) return pass(flow);
+  if (given.velocities) return rest_in(flow);
   if (scene.shells)
     flow_at_points(velocity.data(), 3);
   else
@@ -71,7 +71,7 @@ void BodyScene::assemble(Films films)
   carry();
 }
 
-void BodyScene::pass(const std::vector<double> &slip, bool strained)
+void BodyScene::rest_in(const std::vector<double> &slip, bool strained)
 {
   if (scene.shells)
     slip_at_points(slip, strained);
@@ -240,10 +240,10 @@ void BodyScene::find_known()
   const size_t count = loner.size() + shaped.size();
   known.assign(count + 1, given.velocities ? SD_BODY_HELD : SD_BODY_FREE);
   velocities.clear();
-  if (given.velocities || given.held) bodies.known = known.data();
-  if (given.velocities || !given.held) return;
+  if (given.velocities || given.known) bodies.known = known.data();
+  if (given.velocities || !given.known) return;
   velocities.assign(6 * count + 6, 0.0);
-  std::vector<double> rows = scene.rows(7, [this](int i, double *out) { out[6] = given.held(i, out); });
+  std::vector<double> rows = scene.rows(7, [this](int i, double *out) { out[6] = given.known(i, out); });
   scene.drift(rows.data(), 7, 1.0);
   const size_t lone_ones = first_clump();
   for (size_t b = 0; b < lone_ones; b++) {    // their rows come first

@@ -4,7 +4,7 @@
  *
  *   place()      by spheres: what is given of them, and the fluid there
  *   assemble()   and as bodies, with the films between them
- *   pass()       where velocities are given: the same bodies in another slip */
+ *   rest_in()    where velocities are given: the same bodies in another slip */
 #ifndef SD_BODY_SCENE_H
 #define SD_BODY_SCENE_H
 
@@ -38,7 +38,7 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   void assemble(Films films = NO_FILMS);
   /* Everybody rests in a fluid that moves with this slip [width spheres]; strained: and varies around each
    * sphere as the ambient one does. The bodies have been assembled. */
-  void pass(const std::vector<double> &slip, bool strained = true);
+  void rest_in(const std::vector<double> &slip, bool strained = true);
 
   /* With shells of points: those of clumps turn with them. The rows of the scene stand. */
   void orient();
@@ -47,7 +47,7 @@ class BodyScene : protected LAMMPS_NS::Pointers {
    * clumps with shells that interact */
   bool joined() const
   {
-    return scene.shells || (rigid.settings.on && !rigid.settings.apart() && rigid.settings.shell > 1);
+    return scene.shells || (rigid.settings.on && !rigid.settings.each_alone() && rigid.settings.shell > 1);
   }
 
   /* By spheres, width numbers each: loads; velocity of the fluid, where velocities are given less

@@ -15,7 +15,7 @@ void BodyScene::orient()
     const sd_multiblob_shape &points = points_of(clump);
     double pose[9], turn[9];
     sd_multiblob_shape_stand(&points, clump.pose, pose, turn);
-    for (int k = 0; k < poses.body(clump).n; k++)
+    for (int k = 0; k < poses.own_clump(clump).n; k++)
       scene.shells->turn_row(scene.row_of_member((int) poses.member_of(clump, k)), turn,
                              points.mask[k]);
   }

@@ -42,7 +42,7 @@ void BodySteps::step_lone(int i, const double *move, const double *beyond_box)
 BodySteps::Clumps BodySteps::clumps_now(const Hydrodynamics &hydro)
 {
   const WholeClumps &whole = hydro.scene.whole;
-  return {hydro.poses().clumps(), whole.x, whole.steps, whole.h};
+  return {hydro.poses().clumps(), whole.x, whole.edges, whole.h};
 }
 
 /* What becomes of the spheres of clump c of this rank. Positions are those of images side by side: an atom moves
@@ -52,7 +52,7 @@ void BodySteps::step_clump(const ClumpPoses &poses, const Clumps &from, size_t c
                            const double *box, std::vector<double> &x, const Give &give) const
 {
   const ClumpPoses::Clump &clump = poses.clumps()[c];
-  const RigidClumps::Body &body = poses.body(clump);
+  const RigidClumps::OwnClump &body = poses.own_clump(clump);
   double row[COLUMNS], pose[12];
   copy<12>(from.all[c].pose, pose);
   x.resize(3 * (size_t) body.n);
@@ -64,7 +64,7 @@ void BodySteps::step_clump(const ClumpPoses &poses, const Clumps &from, size_t c
     const size_t m = poses.member_of(clump, k);
     double *there = &x[3 * (size_t) k];
     sd_minus(there, &from.x[3 * m], there);
-    sd_add_edges(box, &from.steps[3 * m], there);
+    sd_add_edges(box, &from.edges[3 * m], there);
   }
   // Not at once: a processor waits when it reads in pairs what it has just written one by one.
   for (int k = 0; k < body.n; k++) {
@@ -91,7 +91,7 @@ void BodySteps::step_clumps(Hydrodynamics &hydro, const Clumps &from, const Step
     if (extent == PART) return;
     note(i, row + STEP);
     hydro.turn(i, row + TURN);
-    copy<4>(row + TURNED, rows.give(i) + quaternion);
+    copy<4>(row + TURNED, rows.writable(i) + quaternion);
   });
 }
 
@@ -112,7 +112,7 @@ void BodySteps::follow_moved(const Hydrodynamics &hydro)
     double w[3], R[9];
     for (int d = 0; d < 3; d++) w[d] = update->dt * atom->omega[i][d];
     sd_rotation(w, R);
-    sd_turn_quaternion(R, rows.give(i) + quaternion);
+    sd_turn_quaternion(R, rows.writable(i) + quaternion);
   }
 }
 
@@ -134,28 +134,29 @@ void BodySteps::begin(const Hydrodynamics &hydro)
   began = {ambient.who(),        hydro.poses().lone(), places(hydro), box_of(domain),
            ambient.box_motion(), ambient.jumps() != nullptr};
   const Clumps now = clumps_now(hydro);
-  kept = {now.all, now.x, now.steps, {}};
+  kept = {now.all, now.x, now.edges, {}};
   std::copy_n(now.h, 6, kept.h);
   mu = directions.all();
 }
 
-void BodySteps::back()
+void BodySteps::return_to_start()
 {
   for (int i : began.who) std::copy_n(&began.x.atoms[3 * (size_t) i], 3, atom->x[i]);
   directions.restore(mu);
 }
 
-void BodySteps::go(Hydrodynamics &hydro, const Ride &ride, const Places &there, const Moves &V, Extent extent)
+void BodySteps::go(Hydrodynamics &hydro, const StepWithBox &with_box, const Places &there, const Moves &V,
+                   Extent extent)
 {
   static const double CENTROID[3] = {0.0, 0.0, 0.0};
   const auto moved = [&](bool stays, const double *v, const double *at, const double *from, double move[6]) {
-    for (int d = 0; d < 6; d++) move[d] = ride.t * v[d];
-    if (!stays) ride.step(v, at, from, move);
+    for (int d = 0; d < 6; d++) move[d] = with_box.t * v[d];
+    if (!stays) with_box.displacement(v, at, from, move);
     keep_in_plane(move, 6);
   };
-  back();
+  return_to_start();
   for (size_t i : began.lone) {
-    const double *v = &V.atoms[6 * i], beyond_box[3] = {ride.t * v[0], ride.t * v[1], ride.t * v[2]};
+    const double *v = &V.atoms[6 * i], t = with_box.t, beyond_box[3] = {t * v[0], t * v[1], t * v[2]};
     double move[6];
     moved(drives.stays((int) i), v, &there.atoms[3 * i], &began.x.atoms[3 * i], move);
     step_lone((int) i, move, extent == WHOLE ? beyond_box : nullptr);
@@ -170,12 +171,12 @@ void BodySteps::go(Hydrodynamics &hydro, const Ride &ride, const Places &there, 
   step_clumps(hydro, kept.clumps(), step, extent);
 }
 
-void BodySteps::aside(Hydrodynamics &hydro, const Moves &W, double sign)
+void BodySteps::displace(Hydrodynamics &hydro, const Moves &W, double sign)
 {
   go(hydro, {sign}, began.x, W, PART);
 }
 
-void BodySteps::half(Hydrodynamics &hydro, const Moves &V)
+void BodySteps::half_step(Hydrodynamics &hydro, const Moves &V)
 {
   const double t = 0.5 * update->dt;
   half_way = box_later(began.flow, began.box, t);
@@ -183,18 +184,18 @@ void BodySteps::half(Hydrodynamics &hydro, const Moves &V)
   go(hydro, {t, began.carried, began.box, began.box, half_way, began.flow}, began.x, V, PART);
 }
 
-void BodySteps::middle(const Hydrodynamics &hydro)
+void BodySteps::end_half_steps(const Hydrodynamics &hydro)
 {
   found_at = places(hydro);
   if (began.flow.deforms) put_box(domain, began.box);
 }
 
-void BodySteps::whole(Hydrodynamics &hydro, const Moves &V)
+void BodySteps::whole_step(Hydrodynamics &hydro, const Moves &V)
 {
   const Ambient &ambient = hydro.ambient;
   bring_box_to_this_step(lmp);
-  const Ride all = {update->dt,     ambient.jumps() != nullptr, began.box, half_way,
-                    box_of(domain), ambient.box_motion()};
+  const StepWithBox all = {update->dt,     ambient.jumps() != nullptr, began.box, half_way,
+                           box_of(domain), ambient.box_motion()};
   go(hydro, all, found_at, V, WHOLE);
 }
 

@@ -36,7 +36,7 @@ class BodySteps : protected LAMMPS_NS::Pointers {
   /* Is there anything but clumps that turns? Then what a solve has found of atom i: its angular velocity, and
    * that again, nullptr: it has no direction */
   bool turns() const { return directions.on(); }
-  void look(int i, const double W[3]) { directions.look(i, W); }
+  void note_found(int i, const double W[3]) { directions.note_found(i, W); }
   const double *spin(int i) const { return directions.on() ? directions.turning[i] : nullptr; }
 
   // --- from where they stand
@@ -68,15 +68,16 @@ class BodySteps : protected LAMMPS_NS::Pointers {
   void begin(const Hydrodynamics &);
   const Start &start() const { return began; }
   /* All but those of fix move stand there again. */
-  void back();
+  void return_to_start();
   /* By W times a sign, in the box that stands */
-  void aside(Hydrodynamics &, const Moves &W, double sign);
-  /* Half the step by velocities V of its start, in the box of its middle, which is LAMMPS's until middle() */
-  void half(Hydrodynamics &, const Moves &V);
+  void displace(Hydrodynamics &, const Moves &W, double sign);
+  /* Half the step by velocities V of its start, in the box of its middle, which is LAMMPS's until
+   * end_half_steps() */
+  void half_step(Hydrodynamics &, const Moves &V);
   /* The velocities of the step are those of where bodies stand now. */
-  void middle(const Hydrodynamics &);
+  void end_half_steps(const Hydrodynamics &);
   /* All of it, by these, in the box of its end */
-  void whole(Hydrodynamics &, const Moves &V);
+  void whole_step(Hydrodynamics &, const Moves &V);
 
   /* In whole steps since rest(): the square of the largest displacement over radius, of this rank */
   double farthest() const { return displaced; }
@@ -99,15 +100,15 @@ class BodySteps : protected LAMMPS_NS::Pointers {
   struct Clumps {
     const std::vector<ClumpPoses::Clump> &all;
     const std::vector<double> &x;
-    const std::vector<int> &steps;
+    const std::vector<int> &edges;
     const double *h;
   };
   struct KeptClumps {
     std::vector<ClumpPoses::Clump> all;
     std::vector<double> x;
-    std::vector<int> steps;
+    std::vector<int> edges;
     double h[6];
-    Clumps clumps() const { return {all, x, steps, h}; }
+    Clumps clumps() const { return {all, x, edges, h}; }
   } kept;
 
   /* what an owner sends to a member: by how much it moves and turns, and the quaternion of its clump when
@@ -117,7 +118,8 @@ class BodySteps : protected LAMMPS_NS::Pointers {
   enum Extent { PART, WHOLE };
   static Clumps clumps_now(const Hydrodynamics &);
   Places places(const Hydrodynamics &) const;
-  void go(Hydrodynamics &, const Ride &ride, const Places &there, const Moves &V, Extent extent);
+  void go(Hydrodynamics &, const StepWithBox &with_box, const Places &there, const Moves &V,
+          Extent extent);
   template <class Give>
   void step_clump(const ClumpPoses &, const Clumps &from, size_t c, const ClumpStep &goes, const double *box,
                   std::vector<double> &x, const Give &give) const;

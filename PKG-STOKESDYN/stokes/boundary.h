@@ -45,7 +45,7 @@ struct Boundary {
   bool has_images() const { return kind != OPEN; }
   /* That wall whose images pairs have in a law with one at most, and that which matters most to a
    * body at x when it moves alone. sign 0: there is none */
-  const sd_wall &image() const { return wall[0]; }
+  const sd_wall &image_wall() const { return wall[0]; }
   const sd_wall &nearest(const double x[3]) const;
   sd_slab_walls slab_walls() const;
   /* As a user would say it: "above a floor"; where sums over everybody go; "zlo at 0, or zhi at 5" */

@@ -21,7 +21,7 @@ ClumpPoses::ClumpPoses(LAMMPS *lmp, Scene &scene, const Ambient &ambient, RigidC
 }
 
 /* What clumps must know of their spheres; velocities are those of the images side by side. */
-template <int WIDTH> void ClumpPoses::gather(const std::vector<RigidClumps::Body> &all)
+template <int WIDTH> void ClumpPoses::gather(const std::vector<RigidClumps::OwnClump> &all)
 {
   const double *gradients = ambient.gradients(), *jumps = ambient.jumps();
   const bool moving = given.velocities, turns = scene.settings.rotation;
@@ -52,7 +52,7 @@ template <int WIDTH> void ClumpPoses::gather(const std::vector<RigidClumps::Body
     sd_clump_add_load(arm, FT, &loads[6 * b]);
   };
   const auto take = [&](size_t m, const double *of) {
-    const int k = rigid.places()[m], *steps = &scene.whole.steps[3 * m];
+    const int k = rigid.places()[m], *edges = &scene.whole.edges[3 * m];
     if (k < 0) return;
     while (k >= all[b].begin + all[b].n) b++;
     spheres.eta[k] = of[ETA];
@@ -63,19 +63,19 @@ template <int WIDTH> void ClumpPoses::gather(const std::vector<RigidClumps::Body
     else {
       copy<3>(of + VELOCITY, &spheres.v[3 * (size_t) k]);
       copy<3>(of + OMEGA, &spheres.omega[3 * (size_t) k]);
-      if (jumps) sd_add_edges(jumps, steps, &spheres.v[3 * (size_t) k]);
+      if (jumps) sd_add_edges(jumps, edges, &spheres.v[3 * (size_t) k]);
     }
     if (WIDTH < COLUMNS) return;
     copy<3>(of + FLOW, &spheres.flow[3 * (size_t) k]);
     copy<9>(of + GRADIENT, &spheres.gradient[9 * (size_t) k]);
-    if (jumps) sd_add_edges(jumps, steps, &spheres.flow[3 * (size_t) k]);
+    if (jumps) sd_add_edges(jumps, edges, &spheres.flow[3 * (size_t) k]);
   };
   scene.whole.gather<WIDTH>(row, take);
 }
 
 void ClumpPoses::find()
 {
-  found.take(scene.since().lists);
+  found.set(scene.all_epochs().lists);
   all_clumps.clear();
   find_lone();
   if (!rigid.settings.on) return;
@@ -84,7 +84,7 @@ void ClumpPoses::find()
   int64_t split = RigidClumps::NOBODY;
   std::vector<int64_t> bent;
   for (size_t b = 0; b < all.size(); b++) {
-    const RigidClumps::Body &body = all[b];
+    const RigidClumps::OwnClump &body = all[b];
     Clump clump = {(int) b, {}, 0.0, {}, SD_BODY_FREE};
     int taking_part = 0;
     for (int k = 0; k < body.n; k++) {
@@ -99,7 +99,7 @@ void ClumpPoses::find()
       bent.push_back(body.molecule);
     all_clumps.push_back(clump);
   }
-  if (rigid.settle(split, bent)) return find();
+  if (rigid.loosen(split, bent)) return find();
   find_held();
 }
 
@@ -117,25 +117,25 @@ void ClumpPoses::find_lone()
 void ClumpPoses::find_held()
 {
   for (Clump &clump : all_clumps) clump.known = SD_BODY_FREE;
-  if (!given.held || !rigid.settings.on) return;
+  if (!given.known || !rigid.settings.on) return;
   const std::vector<double> of_member = scene.whole.gather(7, [this](int i, double *out) {
-    out[0] = given.held(i, out + 1);
+    out[0] = given.known(i, out + 1);
   });
   int64_t split[2] = {RigidClumps::NOBODY, RigidClumps::NOBODY};    // by held, by pin
   for (Clump &clump : all_clumps) {
     const double *first = &of_member[7 * member_of(clump, 0)];
     clump.known = (sd_body_known) first[0];
-    for (int k = 1; k < body(clump).n; k++) {
+    for (int k = 1; k < own_clump(clump).n; k++) {
       const double known = of_member[7 * member_of(clump, k)];
       int64_t &least = split[known == SD_BODY_PINNED || clump.known == SD_BODY_PINNED];
-      if (known != first[0]) least = std::min(least, body(clump).molecule);
+      if (known != first[0]) least = std::min(least, own_clump(clump).molecule);
     }
     if (clump.known != SD_BODY_HELD) continue;
     double arm[3], turning[3];
     std::copy_n(first + 1, 6, clump.V);
     if (ambient.jumps())
-      sd_add_edges(ambient.jumps(), &scene.whole.steps[3 * member_of(clump, 0)], clump.V);
-    sd_minus(clump.pose + 9, &spheres.x[3 * (size_t) body(clump).begin], arm);
+      sd_add_edges(ambient.jumps(), &scene.whole.edges[3 * member_of(clump, 0)], clump.V);
+    sd_minus(clump.pose + 9, &spheres.x[3 * (size_t) own_clump(clump).begin], arm);
     sd_cross(clump.V + 3, arm, turning);
     for (int d = 0; d < 3; d++) clump.V[d] += turning[d];
   }
@@ -161,7 +161,7 @@ void ClumpPoses::moves(const double *V)
 sd_clump_motion ClumpPoses::look_at(const Clump &clump) const
 {
   const bool strains = ambient.gradients(), spins = scene.settings.rotation;
-  const size_t at = 3 * (size_t) body(clump).begin;
+  const size_t at = 3 * (size_t) own_clump(clump).begin;
   sd_clump_motion m = {};
   m.x = &spheres.x[at];
   m.v = given.velocities ? &spheres.v[at] : nullptr;
@@ -172,11 +172,11 @@ sd_clump_motion ClumpPoses::look_at(const Clump &clump) const
   return m;
 }
 
-void ClumpPoses::velocities(int width, const Take &take)
+void ClumpPoses::velocities(int width, const ToAtom &take)
 {
   double fluid_there[6], V[6], move[6], by_fluid[6], load[6];
   for (int i : lone()) {
-    const bool known = given.held && given.held(i, V);
+    const bool known = given.known && given.known(i, V);
     ambient.fluid(i, fluid_there);
     given.load(i, load);
     for (int d = 0; d < width; d++) {
@@ -193,7 +193,7 @@ void ClumpPoses::velocities(int width, const Take &take)
   const auto all = [&](const auto &give) {
     for (Clump &clump : all_clumps) {
       const ClumpShape &is = shape(clump);
-      const size_t n = body(clump).n, at = 3 * (size_t) body(clump).begin;
+      const size_t n = own_clump(clump).n, at = 3 * (size_t) own_clump(clump).begin;
       const sd_clump_motion motion = look_at(clump);
       double arm[3], on_clump[6] = {0.0};
       sd_minus(&spheres.x[at], clump.pose + 9, arm);
@@ -201,15 +201,15 @@ void ClumpPoses::velocities(int width, const Take &take)
       v.resize(6 * n);
       force.resize(3 * n);
       torque.resize(width == 6 ? 3 * n : 0);
-      sd_clump_settle(&is.shape, &is.clump, &motion, clump.pose, clump.eta, on_clump,
-                      clump.known == SD_BODY_HELD, clump.V, v.data(), force.data(),
-                      width == 6 ? torque.data() : nullptr);
+      sd_clump_move_alone(&is.shape, &is.clump, &motion, clump.pose, clump.eta, on_clump,
+                          clump.known == SD_BODY_HELD, clump.V, v.data(), force.data(),
+                          width == 6 ? torque.data() : nullptr);
       for (size_t k = 0; k < n; k++) {
         const size_t m = member_of(clump, (int) k);
         copy<6>(&v[6 * k], row);
         copy<3>(&force[3 * k], row + 6);
         if (width == 6) copy<3>(&torque[3 * k], row + 9);
-        if (ambient.jumps()) sd_add_edges(back, &scene.whole.steps[3 * m], row);
+        if (ambient.jumps()) sd_add_edges(back, &scene.whole.edges[3 * m], row);
         give(m, row);
       }
     }
@@ -217,7 +217,7 @@ void ClumpPoses::velocities(int width, const Take &take)
   scene.whole.scatter(12, all, [&](int i, const double *of) { take(i, of, of + 6); });
 }
 
-void ClumpPoses::drag(const Drag &take, std::vector<char> &loose)
+void ClumpPoses::drag(const Drag &take, std::vector<char> &left_over)
 {
   const bool turns = scene.settings.rotation;
   std::vector<double> F, T;
@@ -226,11 +226,11 @@ void ClumpPoses::drag(const Drag &take, std::vector<char> &loose)
     for (const Clump &clump : clumps()) {
       const ClumpShape &is = shape(clump);
       const sd_clump_motion motion = look_at(clump);
-      F.resize(3 * (size_t) body(clump).n);
-      T.resize(3 * (size_t) body(clump).n);
+      F.resize(3 * (size_t) own_clump(clump).n);
+      T.resize(3 * (size_t) own_clump(clump).n);
       sd_clump_drag(&is.shape, &is.clump, &motion, clump.pose, clump.eta, F.data(),
                     turns ? T.data() : nullptr);
-      for (size_t k = 0; k < (size_t) body(clump).n; k++) {
+      for (size_t k = 0; k < (size_t) own_clump(clump).n; k++) {
         copy<3>(&F[3 * k], row + 1);
         if (turns) copy<3>(&T[3 * k], row + 4);
         give(member_of(clump, (int) k), row);
@@ -240,13 +240,13 @@ void ClumpPoses::drag(const Drag &take, std::vector<char> &loose)
     for (size_t m = 0; m < rigid.places().size(); m++)
       if (rigid.places()[m] < 0) give(m, row);
   };
-  loose.assign(atom->nlocal + 1, 0);
-  for (int i = 0; i < atom->nlocal; i++) loose[i] = atom->molecule[i] == 0;
+  left_over.assign(atom->nlocal + 1, 0);
+  for (int i = 0; i < atom->nlocal; i++) left_over[i] = atom->molecule[i] == 0;
   scene.whole.scatter(7, all, [&](int i, const double *of) {
     if (of[0] == 0.0)
       take(i, of + 1);
     else
-      loose[i] = 1;
+      left_over[i] = 1;
   });
 }
 

@@ -31,8 +31,8 @@ struct Given {
   /* Who is held, pinned or spun: what is known of atom i, and that of its velocity and angular
    * velocity [6]. Empty: nobody is. A clump is held, or pinned at its centroid, when all its spheres
    * are. */
-  using Held = std::function<sd_body_known(int i, double *V)>;
-  Held held;
+  using Known = std::function<sd_body_known(int i, double *V)>;
+  Known known;
   /* With shells of points, where loads are given: does atom i swim by a slip of its surface, and how?
    * Empty: nobody does */
   using Swims = std::function<bool(int i, sd_squirmer_stroke &stroke)>;
@@ -41,7 +41,7 @@ struct Given {
   void clear()
   {
     loads = nullptr;
-    held = nullptr;
+    known = nullptr;
     swims = nullptr;
   }
   void load(int i, double *FT) const
@@ -77,13 +77,13 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
    * begins, atoms have other indices */
   const std::vector<Clump> &clumps() const { return stands() ? all_clumps : no_clumps; }
   const std::vector<int> &lone() const { return stands() ? all_lone : nobody_lone; }
-  bool stands() const { return found.is(scene.since().lists); }
-  const RigidClumps::Body &body(const Clump &clump) const { return rigid.body(clump.number); }
-  const ClumpShape &shape(const Clump &clump) const { return *body(clump).shape; }
+  bool stands() const { return found.is(scene.all_epochs().lists); }
+  const RigidClumps::OwnClump &own_clump(const Clump &clump) const { return rigid.own_clump(clump.number); }
+  const ClumpShape &shape(const Clump &clump) const { return *own_clump(clump).shape; }
   /* Sphere k of a clump, in the order of its shape: its number among the members of whole */
   size_t member_of(const Clump &clump, int k) const
   {
-    return rigid.members()[body(clump).begin + k];
+    return rigid.members()[own_clump(clump).begin + k];
   }
   /* What the spheres of a clump and the fluid at them do */
   sd_clump_motion look_at(const Clump &clump) const;
@@ -94,13 +94,13 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
 
   /* From loads, what becomes of atom i, of clumps and of free spheres: velocity, and force of the
    * fluid on it, [width] each */
-  using Take = std::function<void(int i, const double *v, const double *F)>;
-  void velocities(int width, const Take &take);
+  using ToAtom = std::function<void(int i, const double *v, const double *F)>;
+  void velocities(int width, const ToAtom &take);
   /* From velocities, of clumps that move as their spheres do: calls take(i, F) for every sphere i of
-   * this rank that is in one that takes part: force, with rotation torque. loose[i] = 1: atom i belongs
+   * this rank that is in one that takes part: force, with rotation torque. left_over[i] = 1: atom i belongs
    * to a loose clump, or to none (molecule 0), and is the solver's. */
   using Drag = std::function<void(int i, const double *F)>;
-  void drag(const Drag &take, std::vector<char> &loose);
+  void drag(const Drag &take, std::vector<char> &left_over);
 
   double memory_usage() const { return 24.0 * sizeof(double) * (double) spheres.eta.capacity(); }
 
@@ -110,7 +110,7 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
   RigidClumps &rigid;
   const Given &given;
 
-  Since found;
+  Stamp found;
   std::vector<Clump> all_clumps;
   std::vector<int> all_lone;
   const std::vector<Clump> no_clumps;
@@ -129,7 +129,7 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
    * well; the last two kinds where the fluid is not uniform */
   enum { ETA, RADIUS, VELOCITY, OMEGA = VELOCITY + 3, LOAD = VELOCITY, FLOW = LOAD + 6, GRADIENT = FLOW + 3,
          COLUMNS = GRADIENT + 9 };
-  template <int WIDTH> void gather(const std::vector<RigidClumps::Body> &all);
+  template <int WIDTH> void gather(const std::vector<RigidClumps::OwnClump> &all);
   void find_lone();
   void find_held();
 };

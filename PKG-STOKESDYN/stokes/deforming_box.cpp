@@ -264,7 +264,7 @@ sd_box box_later(const BoxMotion &flow, const sd_box &now, double t)
   return then;
 }
 
-void Ride::step(const double *V, const double *place, const double *x, double *step) const
+void StepWithBox::displacement(const double *V, const double *place, const double *x, double *step) const
 {
   for (int d = 0; d < 3; d++) step[d] = t * V[d];
   if (!carried) return;

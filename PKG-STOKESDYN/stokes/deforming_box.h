@@ -67,7 +67,7 @@ sd_box box_later(const BoxMotion &flow, const sd_box &now, double t);
 
 /* How far bodies go in the half step from the start of a step, or in all of it by velocities of its
  * middle. */
-struct Ride {
+struct StepWithBox {
   double t;    // how long they go
   /* Does the flow take the box along? Then velocities beyond that of the box count, which are the same for
    * a body and its images, and the box carries what has been moved (sd_box_step) */
@@ -77,7 +77,7 @@ struct Ride {
   BoxMotion flow = {};
   /* step [3] of a body that is at x when the step starts, by V [3], which it has at `place` in the box
    * `at`. Not carried: t V */
-  void step(const double *V, const double *place, const double *x, double *step) const;
+  void displacement(const double *V, const double *place, const double *x, double *step) const;
 };
 
 }    // namespace StokesDyn

@@ -58,10 +58,10 @@ bool Directions::direction(int i, double e[3]) const
   return true;
 }
 
-void Directions::look(int i, const double W[3])
+void Directions::note_found(int i, const double W[3])
 {
   if (!on()) return;
-  double *row = turning.give(i);
+  double *row = turning.writable(i);
   std::copy_n(W, 3, row);
   if (any_moved) quaternion(i, row + 6);
 }

@@ -38,7 +38,7 @@ class Directions : protected LAMMPS_NS::Pointers {
   bool direction(int i, double e[3]) const;
 
   /* What a solve has found */
-  void look(int i, const double W[3]);
+  void note_found(int i, const double W[3]);
   /* The turn w [3] of a whole step dt: by W of now and before, whose change counts by weight
    * (sd_mean_velocity), and noise [3] times scale. W of now is that of before then. Without a direction 0 */
   void turn_of_step(int i, double dt, double weight, double scale, const double *noise, double w[3]);

@@ -44,7 +44,7 @@ void Drives::refuse_pinned(const Hydrodynamics &hydro) const
       }))
     keyword.fail("atom " + std::to_string(both) + " is in the group of keyword held as well: it must be in "
                  "one of them only");
-  if (hydro.settings.rigid.apart())
+  if (hydro.settings.rigid.each_alone())
     keyword.fail("it is for spheres and clumps that feel each other: use clumps_only no of pair_style "
                  "stokes_dynamics");
 }
@@ -80,7 +80,7 @@ void Drives::load(int i, double *FT) const
   torques.add(i, FT + 3);
 }
 
-/* The same as it goes on, with the torque on those that slip */
+/* The same as it goes on, with the torque on those overloaded */
 void Drives::push(int i, double change, double *FT) const
 {
   load(i, FT);
@@ -93,18 +93,18 @@ Given Drives::given(double change) const
   Given all;
   all.loads = [this, change](int i, double *FT) { push(i, change, FT); };
   if (holds_any())
-    all.held = [this](int i, double *V) { return known(i, V); };
+    all.known = [this](int i, double *V) { return known(i, V); };
   if (squirmers.on())
     all.swims = [this](int i, sd_squirmer_stroke &stroke) { return squirmers.stroke(i, stroke); };
   return all;
 }
 
-void Drives::look(int i, const double *W, const double *by_fluid, double change)
+void Drives::note_found(int i, const double *W, const double *by_fluid, double change)
 {
   if (!spin.on()) return;
   double pushed[6];
   push(i, change, pushed);
-  spin.look(i, W, by_fluid, pushed + 3);
+  spin.note_found(i, W, by_fluid, pushed + 3);
 }
 
 }    // namespace StokesDyn

@@ -60,13 +60,13 @@ class Drives : protected LAMMPS_NS::Pointers {
    * before; drives stand as long as what is given. */
   Given given(double change) const;
   /* What a solve has found of atom i: angular velocity, and the torque of the fluid */
-  void look(int i, const double *W, const double *by_fluid, double change);
+  void note_found(int i, const double *W, const double *by_fluid, double change);
   /* Positions have advanced. */
   void advance() { spin.advance(); }
 
-  /* Rows and number of those that slip (spin.h) */
-  AtomRows &slipping() { return spin.slipping; }
-  double slip() const { return spin.slip(); }
+  /* Rows and number of those overloaded (spin.h) */
+  AtomRows &overloaded() { return spin.overloaded; }
+  double count_overloaded() const { return spin.count_overloaded(); }
 
  private:
   const Voice voice;

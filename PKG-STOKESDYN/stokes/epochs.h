@@ -1,5 +1,5 @@
 /* Since when things are as they are. Whatever is derived from something keeps the epoch that this
- * had then (Since), and is made anew when it finds a later one: so nobody has to tell anybody that
+ * had then (Stamp), and is made anew when it finds a later one: so nobody has to tell anybody that
  * what he has is out of date.
  *
  * Each epoch is advanced in the one place that is named. No two are alike, not those of another
@@ -14,22 +14,22 @@ class Epoch {
   void advance() { number = ++latest; }
 
  private:
-  friend class Since;
+  friend class Stamp;
   inline static long latest = 0;
   long number = ++latest;
 };
 
 /* The epoch in which something was made, looked at or said; none in the beginning. */
-class Since {
+class Stamp {
  public:
   bool is(const Epoch &now) const { return number == now.number; }
-  void take(const Epoch &now) { number = now.number; }
+  void set(const Epoch &now) { number = now.number; }
   void never() { number = 0; }
   /* Was it another one until now? */
   bool first_in(const Epoch &now)
   {
     const bool first = !is(now);
-    take(now);
+    set(now);
     return first;
   }
 

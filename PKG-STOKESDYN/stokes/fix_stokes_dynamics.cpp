@@ -83,15 +83,15 @@ void FixStokesDynamics::post_force(int /*vflag*/)
   const bool adds = applies();
   for (double &t : total) t = 0.0;
   const Ambient &ambient = hydro.ambient;
-  if (cleared.first_in(hydro.scene.since().selection))
+  if (cleared.first_in(hydro.scene.all_epochs().selection))
     for (int i = 0; i < atom->nlocal; i++)
-      if (!ambient.active()[i]) rows.take(i);
+      if (!ambient.active()[i]) rows.erase(i);
   for (int i : ambient.who()) {
     if (!(atom->mask[i] & groupbit)) {
-      rows.take(i);
+      rows.erase(i);
       continue;
     }
-    double *row = rows.give(i);
+    double *row = rows.writable(i);
     const double *F = hydro.force(i), *torque = hydro.torque(i);
     std::copy_n(F, 6, row);
     for (int d = 0; d < 3; d++) row[6 + d] = torque ? torque[d] : 0.0;

@@ -30,7 +30,7 @@ class FixStokesDynamics : public RowsFix {
   /* Fx Fy Fz v'x v'y v'z Tx Ty Tz of the spheres that are in the group and take part */
   AtomArray rows;
   /* others than those of the pair style have zeros (Epochs::selection) */
-  Since cleared;
+  Stamp cleared;
   /* of the global vector: the total force is a sum over the spheres */
   int extensive[9] = {1, 1, 1, 0, 0, 0, 0, 0, 0};
   /* F and dissipation of the group, this rank */

@@ -320,6 +320,6 @@ void FixStokesDynamicsField::write(const sd_field_grid &g, const std::vector<dou
 
 double FixStokesDynamicsField::memory_usage()
 {
-  return sizeof(double) * (double) (tables.source_room + tables.scratch_room) +
+  return sizeof(double) * (double) (tables.source_room + tables.scratch_room + tables.centre_room) +
       in_slab.memory_usage();
 }

@@ -25,7 +25,7 @@ using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
-    RowsFix(lmp, narg, arg), adapt(), noise(voice), directions(lmp), drives(voice, directions), motion(3),
+    RowsFix(lmp, narg, arg), adapt(), noise(voice), directions(lmp), drives(voice, directions), lone_velocity(3),
     random(6), steps(lmp, drives, directions, output, TURNED), before(9), output(OUTPUTS)
 {
   Keywords in = keywords(narg, arg);
@@ -68,7 +68,7 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
   extscalar = 1;
   extvector = 0;
   global_freq = 1;
-  std::vector<RowsOfAtoms *> rows = {&motion, &random, &drives.before, &before, &drives.slipping(), &output};
+  std::vector<RowsOfAtoms *> rows = {&lone_velocity, &random, &drives.before, &before, &drives.overloaded(), &output};
   if (steps.turns()) rows.push_back(&directions.turning);
   keep(rows, &output, true);
 }
@@ -98,7 +98,7 @@ void FixStokesDynamicsOverdamped::begin_turns(const Hydrodynamics &hydro)
 {
   if (!turns_begun.first_in(hydro.epochs.lists)) return;
   for (int i : hydro.ambient.who()) {
-    double *q = output.give(i) + TURNED;
+    double *q = output.writable(i) + TURNED;
     if (!in_clump(hydro, i))
       std::fill_n(q, 4, 0.0);
     else if (q[0] == 0.0 && sd_dot(q + 1, q + 1) == 0.0)
@@ -222,9 +222,9 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
   if (has_noise_in_solve()) note_causes(hydro);    // which reads another fluid
   last.atoms = atom->natoms;
   const size_t width = hydro.rotation() ? 6 : 3, turns = steps.turns() ? width : 3;
-  const Solve::Take take = [&, width](int i, const double *v, const double *F) {
+  const Solve::ToAtom take = [&, width](int i, const double *v, const double *F) {
     const double *fluid = hydro.ambient.velocity(i);
-    double *row = output.give(i), *moves = atom_row(atom->v, i), V[6];
+    double *row = output.writable(i), *moves = atom_row(atom->v, i), V[6];
     for (size_t d = 0; d < width; d++) V[d] = v[d];
     steps.keep_in_plane(V, width);
     for (size_t d = 0; d < 3; d++) {
@@ -234,10 +234,10 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
       row[6 + d] = width == 6 ? F[3 + d] : 0.0;
       if (width == 6) atom->omega[i][d] = V[3 + d];
     }
-    if (!in_clump(hydro, i)) copy<3>(V, motion.give(i));
+    if (!in_clump(hydro, i)) copy<3>(V, lone_velocity.writable(i));
     if (width == 3) return;
-    steps.look(i, V + 3);
-    drives.look(i, V + 3, F + 3, change_of_loads());
+    steps.note_found(i, V + 3);
+    drives.note_found(i, V + 3, F + 3, change_of_loads());
   };
   if (scheme == MIDPOINT && noise.on())
     find_noisy_velocities(hydro, take);
@@ -247,7 +247,7 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
     hydro.velocities(take, given());
   if (noise.on() && scheme != MIDPOINT)
     noise.draw(hydro, turns, [this, turns](int i, const double *y) {
-      std::copy_n(y, turns, random.give(i));
+      std::copy_n(y, turns, random.writable(i));
     });
   velocity_change = change_of_velocities();
   last.step = update->ntimestep;

@@ -64,7 +64,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
 
   /* [3] velocity of a free sphere that is in no clump, by which the next step goes: LAMMPS's v is output,
    * and others may write to it */
-  AtomRows motion;
+  AtomRows lone_velocity;
   /* [6] schemes ab2 and euler: y of a free sphere (noise.h), of its turn only where it has a direction */
   AtomRows random;
   BodySteps steps;
@@ -88,7 +88,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
     double causes[CAUSES] = {0.0};
   } last;
   bool causes_due = false;
-  Since turns_begun;
+  Stamp turns_begun;
   bool from_file = false;
 
   /* change_of_velocities() in the last step, of this rank */
@@ -135,7 +135,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   // --- scheme midpoint (fix_stokes_dynamics_overdamped_midpoint.cpp)
 
   Moves found(const Hydrodynamics &) const;
-  void begin_midpoint(Hydrodynamics &, const Solve::Take &take);
+  void begin_midpoint(Hydrodynamics &, const Solve::ToAtom &take);
   void move_by_midpoint(Hydrodynamics &);
   void make_step(Hydrodynamics &, const Moves &V);
 
@@ -144,7 +144,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   /* first moments of the noise alone, [12 nlocal], and of which step */
   std::vector<double> moments_of_noise;
   LAMMPS_NS::bigint moments_step = -1;
-  void find_noisy_velocities(Hydrodynamics &, const Solve::Take &take);
+  void find_noisy_velocities(Hydrodynamics &, const Solve::ToAtom &take);
 
   // --- what is told of a step
 

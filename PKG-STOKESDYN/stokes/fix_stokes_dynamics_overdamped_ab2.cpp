@@ -31,7 +31,7 @@ void FixStokesDynamicsOverdamped::at_image(const Hydrodynamics &hydro, const dou
 void FixStokesDynamicsOverdamped::move_free(const Hydrodynamics &hydro, int i)
 {
   if (drives.is_held(i)) return;
-  const double dt = update->dt, *V = motion[i];
+  const double dt = update->dt, *V = lone_velocity[i];
   const double scale = noise.on() ? noise.scale(dt) : 0.0;
   double old[6] = {V[0], V[1], V[2]}, mean[3], move[6];
   if (before.has(i)) at_image(hydro, before[i], atom->x[i], old);
@@ -39,7 +39,7 @@ void FixStokesDynamicsOverdamped::move_free(const Hydrodynamics &hydro, int i)
   for (int d = 0; d < 3; d++) move[d] = dt * mean[d] + (noise.on() ? scale * random[i][d] : 0.0);
   directions.turn_of_step(i, dt, weight(before.has(i)), scale, random[i] + 3, move + 3);
   steps.go(i, move);
-  double *row = before.give(i);
+  double *row = before.writable(i);
   copy<3>(V, row);
   copy<3>(atom->x[i], row + 6);
 }
@@ -68,9 +68,9 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
   const ClumpPoses &poses = hydro.poses();
   steps.go(hydro, [&](size_t number) {
     const ClumpPoses::Clump &clump = poses.clumps()[number];
-    const int first = poses.body(clump).atom;
+    const int first = poses.own_clump(clump).atom;
     const bool has = before.has(first);
-    double V[6], old[6], mean[6], *row = before.give(first);
+    double V[6], old[6], mean[6], *row = before.writable(first);
     BodySteps::ClumpStep s = {tracked(poses.shape(clump)), {}, row + 6};
     tracked_velocity(clump, poses.shape(clump), V);
     at_image(hydro, row, clump.pose + 9, old);

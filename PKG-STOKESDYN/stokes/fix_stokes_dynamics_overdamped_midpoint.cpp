@@ -35,7 +35,7 @@ using namespace StokesDyn;
 void FixStokesDynamicsOverdamped::refuse_midpoint(const Hydrodynamics &hydro) const
 {
   const Voice keyword = voice.of("keyword scheme");
-  if (hydro.settings.rigid.apart())
+  if (hydro.settings.rigid.each_alone())
     keyword.fail("midpoint is for bodies that feel each other: use ab2 with clumps_only yes");
   if (hydro.settings.rigid.on &&
       first_atom(lmp, [this](int i) { return drives.is_moved(i) && atom->molecule[i] != 0; }))
@@ -59,7 +59,7 @@ Moves FixStokesDynamicsOverdamped::found(const Hydrodynamics &hydro) const
   V.atoms.assign(6 * (size_t) atom->nlocal + 6, 0.0);
   const BodySteps::Start &start = steps.start();
   for (size_t i : start.lone) {
-    std::copy_n(motion[i], 3, &V.atoms[6 * i]);
+    std::copy_n(lone_velocity[i], 3, &V.atoms[6 * i]);
     if (const double *W = steps.spin((int) i)) std::copy_n(W, 3, &V.atoms[6 * i + 3]);
     for (size_t d = 0; d < 3 && drives.is_moved(i); d++)
       V.atoms[6 * i + d] = (atom->x[i][d] - start.x.atoms[3 * i + d]) / update->dt;
@@ -72,13 +72,13 @@ Moves FixStokesDynamicsOverdamped::found(const Hydrodynamics &hydro) const
 /* By velocities of its middle */
 void FixStokesDynamicsOverdamped::make_step(Hydrodynamics &hydro, const Moves &V)
 {
-  steps.whole(hydro, V);
-  for (int i : steps.start().who) drives.load(i, drives.before.give(i));
+  steps.whole_step(hydro, V);
+  for (int i : steps.start().who) drives.load(i, drives.before.writable(i));
 }
 
 // --- without noise --------------------------------------------------------------------------------------------
 
-void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Solve::Take &take)
+void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Solve::ToAtom &take)
 {
   hydro.velocities(take, given());
   steps.begin(hydro);
@@ -92,9 +92,9 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   drives.moved_with.assign(3 * (size_t) atom->nlocal + 3, 0.0);
   for (size_t i : steps.start().lone)
     if (drives.is_moved((int) i)) std::copy_n(&V.atoms[6 * i], 3, &drives.moved_with[3 * i]);
-  steps.back();
+  steps.return_to_start();
   hydro.look_ahead();
-  steps.half(hydro, V);
+  steps.half_step(hydro, V);
   hydro.begin(Hydrodynamics::MIDDLE);
   hydro.ambient.half_a_step_back();
   hydro.velocities([this, &V, width](int i, const double *v, const double *) {
@@ -104,6 +104,6 @@ void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
   for (const ClumpPoses::Clump &clump : hydro.poses().clumps())
     V.clumps.insert(V.clumps.end(), clump.V, clump.V + 6);
   drives.moved_with.clear();
-  steps.middle(hydro);
+  steps.end_half_steps(hydro);
   make_step(hydro, V);
 }

@@ -16,10 +16,10 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-void FixStokesDynamicsOverdamped::find_noisy_velocities(Hydrodynamics &hydro, const Solve::Take &take)
+void FixStokesDynamicsOverdamped::find_noisy_velocities(Hydrodynamics &hydro, const Solve::ToAtom &take)
 {
   const Given known = given();
-  const Solve::Draw draw = noise.slip(hydro);
+  const Solve::Draw draw = noise.how_to_draw(hydro);
   hydro.draw(known, draw);
   if (ComputeStokesDynamicsStress::wants_low(lmp)) {
     hydro.stress_of_noise(noise.tolerance_of_solve(), moments_of_noise);
@@ -28,21 +28,21 @@ void FixStokesDynamicsOverdamped::find_noisy_velocities(Hydrodynamics &hydro, co
   steps.begin(hydro);
   const Moves of_points = hydro.half_step_of_points(), of_films = hydro.half_step_of_films();
   if (hydro.needs_differences()) {
-    const Moves wander = hydro.wander(draw);
+    const Moves moves = hydro.random_moves(draw);
     for (double sign : {1.0, -1.0}) {
-      steps.aside(hydro, wander, sign);
+      steps.displace(hydro, moves, sign);
       hydro.begin(Hydrodynamics::MIDDLE);
       hydro.difference(known, sign);
     }
   }
-  steps.half(hydro, of_films);
+  steps.half_step(hydro, of_films);
   hydro.begin(Hydrodynamics::HALF_LATER);
   hydro.films(known);
-  steps.half(hydro, of_points);
+  steps.half_step(hydro, of_points);
   hydro.begin(Hydrodynamics::HALF_LATER);
   hydro.velocities(take, known, noise.tolerance_of_solve());
-  steps.middle(hydro);
-  steps.back();
+  steps.end_half_steps(hydro);
+  steps.return_to_start();
 }
 
 const std::vector<double> *FixStokesDynamicsOverdamped::stress_of_noise() const

@@ -43,7 +43,7 @@ double FixStokesDynamicsOverdamped::compute_vector(int k)
                                             [&] { return update->dt; },
                                             [&] { return (double) noise.report().products; },
                                             [&] { return noise.report().error; },
-                                            [&] { return drives.slip(); },
+                                            [&] { return drives.count_overloaded(); },
                                             [&] { return pressure_gradient(0); },
                                             [&] { return pressure_gradient(1); },
                                             [&] { return pressure_gradient(2); }};
@@ -79,12 +79,12 @@ double FixStokesDynamicsOverdamped::change_of_velocities() const
   for (int i : poses.lone()) {
     if (!before.has(i)) continue;
     at_image(hydro, before[i], atom->x[i], old);
-    for (int d = 0; d < 3; d++) old[d] -= motion[i][d];
+    for (int d = 0; d < 3; d++) old[d] -= lone_velocity[i][d];
     most = std::max(most, sd_dot(old, old) / (atom->radius[i] * atom->radius[i]));
   }
   for (const ClumpPoses::Clump &clump : poses.clumps()) {
     const ClumpShape &is = poses.shape(clump);
-    const int first = poses.body(clump).atom;
+    const int first = poses.own_clump(clump).atom;
     double now_V[6], turned[6], from[3], change[3];    // turned: into the axes of the shape
     if (!before.has(first)) continue;
     tracked_velocity(clump, is, now_V);

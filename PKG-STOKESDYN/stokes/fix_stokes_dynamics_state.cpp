@@ -33,8 +33,8 @@ FixStokesDynamicsState *FixStokesDynamicsState::provide(LAMMPS *lmp, bool rotati
                                                         int points, int most)
 {
   FixStokesDynamicsState *fix = find(lmp);
-  if (fix && fix->rotation == rotation && fix->history == history && fix->points == points &&
-      fix->most == most)
+  if (fix && fix->rotation == rotation && fix->history == history && fix->shell_points == points &&
+      fix->most_points == most)
     return fix;
   const std::string words = std::to_string(rotation) + " " + std::to_string(history) + " " +
       std::to_string(points) + " " + std::to_string(most);
@@ -48,23 +48,23 @@ static int number(int narg, char **arg, int k)
 
 FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg) :
     RowsFix(lmp, narg, arg), rotation(number(narg, arg, 3)), history(number(narg, arg, 4)),
-    points(number(narg, arg, 5)), most(number(narg, arg, 6)),
-    rows(points > 0 ? of_motion_before() + 6 : of_points()),
-    places(3), larger{AtomRows(6 * 42), AtomRows(6 * 162), AtomRows(6 * 642)},
+    shell_points(number(narg, arg, 5)), most_points(number(narg, arg, 6)),
+    rows(shell_points > 0 ? velocities_before() + 6 : of_points()),
+    made_at(3), larger{AtomRows(6 * 42), AtomRows(6 * 162), AtomRows(6 * 642)},
     resume(lmp, rotation), left(resume.columns())
 {
   restart_global = 1;
-  std::vector<RowsOfAtoms *> all = {&rows, &places, &left}, moving;
+  std::vector<RowsOfAtoms *> all = {&rows, &made_at, &left}, moving;
   if (has_larger()) moving = {&larger[0], &larger[1], &larger[2]};
   keep(all, nullptr, true, NO_BORDERS, moving);
 }
 
-void FixStokesDynamicsState::take(int i)
+void FixStokesDynamicsState::erase(int i)
 {
-  rows.take(i);
-  places.take(i);
+  rows.erase(i);
+  made_at.erase(i);
   for (AtomRows &of : larger)
-    if (has_larger()) of.take(i);
+    if (has_larger()) of.erase(i);
 }
 
 /* Whose rows those of a shell of so many points are among `larger` */
@@ -73,11 +73,11 @@ static int place_of(int n)
   return n == 42 ? 0 : n == 162 ? 1 : 2;
 }
 
-FixStokesDynamicsState::OfPoints<double> FixStokesDynamicsState::give_points(int i, int kind, int n)
+FixStokesDynamicsState::OfPoints<double> FixStokesDynamicsState::writable_points(int i, int kind, int n)
 {
-  if (kind == 0) return {rows.give(i) + of_points(), rows.give(i) + of_points_before()};
+  if (kind == 0) return {rows.writable(i) + of_points(), rows.writable(i) + of_points_before()};
   if (!has_larger()) return {nullptr, nullptr};
-  double *row = larger[place_of(n)].give(i);
+  double *row = larger[place_of(n)].writable(i);
   return {row, row + 3 * n};
 }
 
@@ -98,7 +98,7 @@ void FixStokesDynamicsState::forget()
   global.time_before = old.time_before;
   rows.clear();
   for (AtomRows &of : larger) of.clear();
-  places.clear();
+  made_at.clear();
   left.clear();
 }
 
@@ -148,9 +148,9 @@ bool FixStokesDynamicsState::box_left_as_is() const
 void FixStokesDynamicsState::record(int i)
 {
   if (rows.has(i))
-    resume.record(i, left.give(i));
+    resume.record(i, left.writable(i));
   else
-    left.take(i);
+    left.erase(i);
 }
 
 void FixStokesDynamicsState::post_run()
@@ -198,7 +198,7 @@ std::vector<double> FixStokesDynamicsState::of_larger_spheres() const
   return from_all(world, mine);
 }
 
-void FixStokesDynamicsState::give_larger_spheres(const std::vector<double> &all)
+void FixStokesDynamicsState::set_larger_spheres(const std::vector<double> &all)
 {
   std::unordered_map<tagint, int> here;
   if (!has_larger() || all.empty()) return;
@@ -206,7 +206,7 @@ void FixStokesDynamicsState::give_larger_spheres(const std::vector<double> &all)
   for (size_t at = 0; at + 2 < all.size();) {
     AtomRows &of = larger[(int) all[at + 1]];
     const auto found = here.find((tagint) all[at]);
-    if (found != here.end()) std::copy_n(&all[at + 2], of.columns(), of.give(found->second));
+    if (found != here.end()) std::copy_n(&all[at + 2], of.columns(), of.writable(found->second));
     at += 2 + of.columns();
   }
 }
@@ -215,7 +215,7 @@ void FixStokesDynamicsState::write_state(NamedState &out)
 {
   present_box(global.box);
   out.put("time", time());
-  out.put("places_box", global.places_box);
+  out.put("places_box", global.made_in_box);
   out.put("loose", global.loose);
   out.put("open_box", global.open_box);
   out.put("in_axes_of_shells", 1.0);
@@ -227,12 +227,12 @@ void FixStokesDynamicsState::write_state(NamedState &out)
 void FixStokesDynamicsState::read_state(const NamedState &in)
 {
   global.time_before = in.get("time", time()) - lammps_time(update);
-  global.places_box = in.get("places_box");
+  global.made_in_box = in.get("places_box");
   global.loose = in.get("loose");
   global.open_box = in.get("open_box");
   global.settings = in.get_bits("settings", 0);
   global.guess = in.get_bits("guess", 0);
-  give_larger_spheres(in.get("larger_spheres"));
-  if (points > 0 && in.get("in_axes_of_shells", 0.0) == 0.0)
+  set_larger_spheres(in.get("larger_spheres"));
+  if (shell_points > 0 && in.get("in_axes_of_shells", 0.0) == 0.0)
     global.last_step = -1;    // of a version that kept forces of points in space
 }

@@ -45,25 +45,25 @@ class FixStokesDynamicsState : public RowsFix {
   int before() const { return rotation ? WITH_ROTATION : WITHOUT_ROTATION; }
   /* of each sphere, whose forces on the fluid are behind that, in the axes of its shell: 3 columns each;
    * 0: none. Then those of the solve before, and the velocities that went with them */
-  const int points;
+  const int shell_points;
   /* of any sphere: those of larger spheres, of another shell, have rows of their own, of their points and
    * those before */
-  const int most;
+  const int most_points;
   template <class T> struct OfPoints {
     T *now, *before;
   };
   /* Of atom i, whose shell has so many points and is the kind-th of Shells; to write, and to read: nullptr
    * where there are none */
-  OfPoints<double> give_points(int i, int kind, int n);
+  OfPoints<double> writable_points(int i, int kind, int n);
   OfPoints<const double> points_of(int i, int kind, int n) const;
   int of_points() const { return before() + (history ? (rotation ? 6 : 3) : 0); }
-  int of_points_before() const { return of_points() + 3 * points; }
-  int of_motion_before() const { return of_points() + 6 * points; }
+  int of_points_before() const { return of_points() + 3 * shell_points; }
+  int velocities_before() const { return of_points() + 6 * shell_points; }
   AtomRows rows;
   /* Atom i has none of them. */
-  void take(int i);
+  void erase(int i);
   /* where spheres stood when the preconditioner was made (preconditioner.h) */
-  AtomRows places;
+  AtomRows made_at;
 
   /* The same on all ranks. A step of -1: never. */
   struct Global {
@@ -97,7 +97,7 @@ class FixStokesDynamicsState : public RowsFix {
     uint64_t settings = 0;
     /* kept for those who know what they mean */
     TimeStepGuard::State guard;
-    std::vector<double> places_box, loose, open_box;
+    std::vector<double> made_in_box, loose, open_box;
   } global;
 
   /* Of this step, since the first run: it goes on after a restart. */
@@ -113,9 +113,9 @@ class FixStokesDynamicsState : public RowsFix {
   Resume resume;
   AtomRows left;
 
-  bool has_larger() const { return points > 0 && most > points; }
+  bool has_larger() const { return shell_points > 0 && most_points > shell_points; }
   std::vector<double> of_larger_spheres() const;
-  void give_larger_spheres(const std::vector<double> &all);
+  void set_larger_spheres(const std::vector<double> &all);
   void forget();
   void record(int i) override;
   std::vector<SavedNumbers> saved() override;

@@ -1,7 +1,6 @@
 #include "guess.h"
 
 #include "ranks.h"
-#include "solve.h"
 
 #include "sd_hash.h"
 #include "sd_linear.h"
@@ -64,14 +63,14 @@ Guess::Start Guess::recall(Question asked) const
   return start;
 }
 
-void Guess::keep(Question asked, const Solve &found)
+void Guess::keep(Question asked, const Found &found)
 {
   State::Global &global = memory->global;
   const double kept = solves_kept(asked);
   if (asked == FORCES)
     keep_perturbation(found.exerted);
   else
-    keep_motions(found.v_with_l);
+    keep_motions(found.v);
   if (shells.settings.on() && scene.anybody_sees())
     keep_points(found.l, kept > 1.0);
   else if (!shells.settings.on() && asked != FORCES)
@@ -114,7 +113,7 @@ void Guess::keep_perturbation(const std::vector<double> &exerted)
     for (size_t j = m * k; j < m * (k + 1) && !scene.alone((int) k); j++)
       perturbed[j] = -exerted[j] / bodies.resistance[j] - bodies.flow[j];
   scene.to_atoms((int) m, perturbed.data(), [&](int i, const double *now) {
-    double *row = memory->rows.give(i), *before = row + memory->before();
+    double *row = memory->rows.writable(i), *before = row + memory->before();
     for (size_t d = 0; d < m; d++) {
       double &last = row[State::at(State::VPRIME, d)];
       if (memory->history) before[d] = last;
@@ -131,7 +130,7 @@ std::vector<double> Guess::recall_motions() const
   const size_t m = width();
   const double line = shells.settings.on() ? memory->global.line : 0.0;
   return scene.rows((int) m, [&](int i, double *out) {
-    const double *row = memory->rows[i], *before = row + memory->of_motion_before();
+    const double *row = memory->rows[i], *before = row + memory->velocities_before();
     for (size_t d = 0; d < m; d++) {
       out[d] = row[State::at(State::VPRIME, d)];
       if (line != 0.0) out[d] += line * (out[d] - before[d]);
@@ -143,10 +142,10 @@ void Guess::keep_motions(const std::vector<double> &v)
 {
   const size_t m = width();
   scene.to_atoms((int) m, v.data(), [&](int i, const double *now) {
-    double *row = memory->rows.give(i);
+    double *row = memory->rows.writable(i);
     for (size_t d = 0; d < m && settings.lubrication.on; d++) {
       double &last = row[State::at(State::VPRIME, d)];
-      if (memory->points > 0) row[memory->of_motion_before() + (int) d] = last;
+      if (memory->shell_points > 0) row[memory->velocities_before() + (int) d] = last;
       last = now[d];
     }
   });
@@ -154,7 +153,7 @@ void Guess::keep_motions(const std::vector<double> &v)
 
 void Guess::turn(int i, const double R[9])
 {
-  if (settings.rigid.apart()) return;    // no guess is made there
+  if (settings.rigid.each_alone()) return;    // no guess is made there
   double *row = memory->rows.row(i);
   const auto turn = [R](double *v) {
     const double was[3] = {v[0], v[1], v[2]};
@@ -162,7 +161,7 @@ void Guess::turn(int i, const double R[9])
   };
   for (int first : {State::FORCE, State::TORQUE, State::VPRIME, State::WPRIME}) turn(row + first);
   for (int half : {0, 3})
-    if (memory->points > 0) turn(row + memory->of_motion_before() + half);
+    if (memory->shell_points > 0) turn(row + memory->velocities_before() + half);
 }
 
 // --- of shells, forces of their points ---------------------------------------------------------------
@@ -185,7 +184,7 @@ std::vector<double> Guess::recall_points(double line) const
 {
   const int *first = shells.first_of_rows(), *kinds = shells.kinds_of_rows();
   std::vector<double> found_then(3 * (size_t) first[scene.size()] + 3, 0.0);
-  for (int kind = 0; kind < shells.kinds() && memory->points > 0; kind++) {
+  for (int kind = 0; kind < shells.kinds() && memory->shell_points > 0; kind++) {
     const int n = shells.model(kind).n;
     const auto read = [&](int i, double *out) {
       const auto of = memory->points_of(i, kind, n);
@@ -202,7 +201,7 @@ std::vector<double> Guess::recall_points(double line) const
 
 void Guess::keep_points(const std::vector<double> &l, bool line_is_known)
 {
-  if (memory->points == 0) return;
+  if (memory->shell_points == 0) return;
   const int *first = shells.first_of_rows(), *kinds = shells.kinds_of_rows();
   std::vector<double> of_points = l;
   turn_points(of_points, true);
@@ -213,7 +212,7 @@ void Guess::keep_points(const std::vector<double> &l, bool line_is_known)
       return kinds[k] == kind ? &of_points[3 * (size_t) first[k]] : nullptr;
     };
     scene.some_to_atoms(3 * n, at, [&](int i, const double *row) {
-      const auto of = memory->give_points(i, kind, n);
+      const auto of = memory->writable_points(i, kind, n);
       for (int d = 0; d < 3 * n && of.now; d++) {
         const double change = row[d] - of.now[d], bend = change - (of.now[d] - of.before[d]);
         off[0] += change * change;

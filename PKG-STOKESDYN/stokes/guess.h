@@ -21,8 +21,6 @@
 
 namespace StokesDyn {
 
-class Solve;
-
 class Guess : protected LAMMPS_NS::Pointers {
  public:
   /* Of all spheres forces, from their velocities; motions, from loads; or these with new random numbers,
@@ -36,6 +34,11 @@ class Guess : protected LAMMPS_NS::Pointers {
     std::vector<double> l, v;
   };
 
+  /* l and v of the answer, and forces of the spheres on the fluid with films, by rows */
+  struct Found {
+    const std::vector<double> &l, &v, &exerted;
+  };
+
   Guess(LAMMPS_NS::LAMMPS *lmp, Scene &, const BodyScene &, const Shells &, const StokesSettings &);
   /* that of the step: Hydrodynamics::begin */
   FixStokesDynamicsState *memory = nullptr;
@@ -45,7 +48,7 @@ class Guess : protected LAMMPS_NS::Pointers {
   /* Nothing to begin from */
   Start none() const;
   /* After it: to the memory */
-  void keep(Question asked, const Solve &found);
+  void keep(Question asked, const Found &);
   /* A sphere turns with its clump by the rotation matrix R, and so does what the next solve begins
    * from. */
   void turn(int i, const double R[9]);

@@ -50,7 +50,7 @@ static bool meets(const Lattice &lattice, const double from[6], const double int
 static const double MOST_COPIES = 1e7, MOST_PER_SPHERE = 1000.0;
 
 /* What of this rank, at f [3 n] in units of the edges, goes to the block `into` of rank p: each
- * sphere by the steps that take it there. itself: one that need not move goes to its own rank, too */
+ * sphere by the edges that take it there. itself: one that need not move goes to its own rank, too */
 bool Halo::send_to(int p, const Lattice &lattice, const std::vector<double> &f, const double from[6],
                    const double into[6], bool itself)
 {
@@ -73,7 +73,7 @@ bool Halo::send_to(int p, const Lattice &lattice, const std::vector<double> &f, 
         for (double v = begin[2]; v <= end[2]; v++) {
           if (!itself && p == post.me && t == 0.0 && u == 0.0 && v == 0.0) continue;
           sphere.push_back((int) (i / 3));
-          steps.insert(steps.end(), {(int) t, (int) u, (int) v});
+          edges.insert(edges.end(), {(int) t, (int) u, (int) v});
         }
     if ((double) sphere.size() > most) return false;
   }
@@ -84,7 +84,7 @@ void Halo::clear()
 {
   post.partners.clear();
   sphere.clear();
-  steps.clear();
+  edges.clear();
   copies = 0;
 }
 
@@ -189,7 +189,7 @@ void Halo::place(const double h[6], const double *x, double *out) const
   outbox.assign(3 * sphere.size() + 1, 0.0);
   for (size_t k = 0; k < sphere.size(); k++) {
     if (x) std::copy_n(x + 3 * (size_t) sphere[k], 3, &outbox[3 * k]);
-    sd_add_edges(h, &steps[3 * k], &outbox[3 * k]);
+    sd_add_edges(h, &edges[3 * k], &outbox[3 * k]);
   }
   post.carry(outbox.data(), out, 3);
 }
@@ -232,7 +232,7 @@ sd_world Halo::ranks() const
 
 double Halo::memory_usage() const
 {
-  return sizeof(int) * ((double) sphere.capacity() + steps.capacity()) +
+  return sizeof(int) * ((double) sphere.capacity() + edges.capacity()) +
       sizeof(double) * (double) outbox.capacity();
 }
 

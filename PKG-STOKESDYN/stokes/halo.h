@@ -72,7 +72,7 @@ class Halo {
   Post post;
   int copies = 0;
   /* the spheres of this rank that go, partner by partner, and by how many edges each is moved */
-  std::vector<int> sphere, steps;
+  std::vector<int> sphere, edges;
   mutable std::vector<double> outbox;
 
   /* the smallest parallelepiped that holds something: lower and upper faces, in units of the edges */

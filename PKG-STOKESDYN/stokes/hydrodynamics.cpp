@@ -66,7 +66,7 @@ void Hydrodynamics::init()
   scene.settings.positive = 0.0;
   given.clear();    // it asks a fix that may be gone
   advance();
-  prepared.take(epochs.run);
+  prepared.set(epochs.run);
   find_boundary(voice, settings);
 }
 
@@ -106,7 +106,7 @@ void Hydrodynamics::begin(Moment moment)
   if (scene.settings.whole) scene.whole.find();
   if (!cleared.first_in(epochs.selection)) return;
   for (int i = 0; i < atom->nlocal; i++)
-    if (!ambient.active()[i]) memory->take(i);
+    if (!ambient.active()[i]) memory->erase(i);
 }
 
 /* Which shells the spheres have: as the run began, or the one that a restart file goes on with. */
@@ -136,15 +136,15 @@ void Hydrodynamics::new_run(bool as_left)
  * are left to the solver. */
 void Hydrodynamics::clumps()
 {
-  if (!settings.rigid.apart()) {
-    solvers = ambient.who();
+  if (!settings.rigid.each_alone()) {
+    solved_atoms = ambient.who();
     if (settings.rigid.on) clump_poses.find();    // are they whole and rigid?
     return;
   }
-  const bool wants_perturbation = reported || settings.rigid.auto_resolve;
+  const bool wants_perturbation = reports_perturbation || settings.rigid.auto_resolve;
   const size_t m = width();
   const auto take = [this, wants_perturbation, m](int i, const double *F) {
-    double *row = memory->rows.give(i), s[6];
+    double *row = memory->rows.writable(i), s[6];
     for (size_t d = 0; d < m; d++) row[State::at(State::FORCE, d)] = F[d];
     if (!wants_perturbation) return;
     ambient.slip(i, s);
@@ -155,12 +155,12 @@ void Hydrodynamics::clumps()
   clump_poses.find();
   clump_poses.drag(take, left_over);
   memory->global.loose = rigid.loose();
-  solvers.clear();
+  solved_atoms.clear();
   for (int i : ambient.who())
-    if (left_over[i]) solvers.push_back(i);
+    if (left_over[i]) solved_atoms.push_back(i);
   if (rigid.any_loose()) return;
-  for (int i : solvers) {    // lone spheres: nobody disturbs the fluid there
-    double *row = memory->rows.give(i);
+  for (int i : solved_atoms) {    // lone spheres: nobody disturbs the fluid there
+    double *row = memory->rows.writable(i);
     for (size_t d = 0; d < m; d++) row[State::at(State::VPRIME, d)] = 0.0;
   }
 }
@@ -170,9 +170,9 @@ void Hydrodynamics::clumps()
 void Hydrodynamics::drag()
 {
   const size_t m = width();
-  for (int i : solvers) {
+  for (int i : solved_atoms) {
     const double k[2] = {ambient.drag(i), ambient.spin(i)};
-    double *row = memory->rows.give(i), s[6];
+    double *row = memory->rows.writable(i), s[6];
     ambient.slip(i, s);
     for (size_t d = 0; d < m; d++)
       row[State::at(State::FORCE, d)] = k[d >= 3] * (s[d] + row[State::at(State::VPRIME, d)]);
@@ -184,34 +184,34 @@ void Hydrodynamics::drag()
  * of now. Where nobody sees anybody there is nothing to solve. */
 void Hydrodynamics::solve()
 {
-  if (settings.rigid.apart() && !rigid.any_loose()) return;
+  if (settings.rigid.each_alone() && !rigid.any_loose()) return;
   place();
   bodies.place(width());
   sd_solve_report report = {};
   const sd_status status = scene.anybody_sees() ? find_forces(report) : SD_OK;
-  judge(status, report);
+  account_for(status, report);
   solver.keep(Guess::FORCES);
 }
 
-void Hydrodynamics::velocities(const Solve::Take &take, const Given &known, double drawn)
+void Hydrodynamics::velocities(const Solve::ToAtom &take, const Given &known, double drawn)
 {
   State::Global &global = memory->global;
   sd_solve_report report = {};
   sd_status status = SD_OK;
-  solvers = ambient.who();
+  solved_atoms = ambient.who();
   given = known;
-  if (settings.rigid.apart()) {
+  if (settings.rigid.each_alone()) {
     clump_poses.find();
     clump_poses.velocities(width(), take);
     if (given_rows.first_in(epochs.selection))    // those that have one are known to have moved here
-      for (int i : solvers) memory->rows.give(i);
+      for (int i : solved_atoms) memory->rows.writable(i);
   } else
     status = find_motions(take, drawn, report);
   // v' is none of this.
   global.last_step = update->ntimestep;
   global.last_solve = -1;
   global.reported = 0;
-  judge(status, report);
+  account_for(status, report);
 }
 
 void Hydrodynamics::look_at_wall()
@@ -229,8 +229,8 @@ void Hydrodynamics::place()
 {
   const Scene::Settings &how = settings.scene;
   scene.set_open_box(memory->global.open_box);
-  scene.update(solvers, ambient);
-  rows_stand.take(epochs.step);
+  scene.update(solved_atoms, ambient);
+  rows_stand.set(epochs.step);
   look_at_wall();
   memory->global.open_box = scene.open_box();
   const bool first = looked.first_in(epochs.run);
@@ -281,7 +281,7 @@ sd_status Hydrodynamics::find_forces(sd_solve_report &report)
 }
 
 /* In one loop, with lubrication in it */
-sd_status Hydrodynamics::find_motions(const Solve::Take &take, double drawn, sd_solve_report &report)
+sd_status Hydrodynamics::find_motions(const Solve::ToAtom &take, double drawn, sd_solve_report &report)
 {
   const bool noisy = drawn > 0.0;
   assemble(noisy ? BodyScene::STANDING_FILMS : BodyScene::FILMS);
@@ -319,7 +319,7 @@ void Hydrodynamics::look_at_step(const sd_solve_report &report, bool preconditio
   memory->global.guard = guard.state;
 }
 
-void Hydrodynamics::judge(sd_status status, const sd_solve_report &report)
+void Hydrodynamics::account_for(sd_status status, const sd_solve_report &report)
 {
   State::Global &global = memory->global;
   global.solves++;

@@ -42,7 +42,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Ambient ambient;
   Scene scene;
   /* Does a fix report v'? For rigid clumps it is computed only then. */
-  bool reported = false;
+  bool reports_perturbation = false;
   /* Does fix stokes_dynamics/overdamped find the velocities? Then the pair style does nothing. */
   bool overdamped = false;
   /* of this LAMMPS as it is now; nullptr before the first run */
@@ -75,7 +75,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
    * them in any order. A step without inertia is begin() and this. Where spheres interact, the memory keeps
    * the forces as the guess of the next step. drawn > 0: with the noise of draw() and the films that films()
    * has left, to this tolerance or that of the settings, whichever is larger. */
-  void velocities(const Solve::Take &take, const Given &known, double drawn = 0.0);
+  void velocities(const Solve::ToAtom &take, const Given &known, double drawn = 0.0);
 
   // --- a step with noise, where spheres interact: at each place begin() and one of these, draw() first and
   // velocities() last (hydrodynamics_noise.cpp)
@@ -87,7 +87,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Moves half_step_of_films() const { return moves_of(solver.of_films); }
   /* Is difference() needed, at x + W and x - W with the signs 1 and -1? */
   bool needs_differences() const { return solver.needs_differences(); }
-  Moves wander(const Solve::Draw &draw) { return moves_of(solver.wander(draw)); }
+  Moves random_moves(const Solve::Draw &draw) { return moves_of(solver.random_moves(draw)); }
   void difference(const Given &known, double sign);
   void films(const Given &known);
 
@@ -131,7 +131,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* That second part, of the velocities of this step */
   double strain_power(int i) const { return films_power.empty() ? 0.0 : films_power[i]; }
   /* A run goes on with the forces of the last one: finds what else outputs need. */
-  void stand();
+  void keep_forces();
   double memory_usage() const;
 
  private:
@@ -144,24 +144,24 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Solve solver;
   TimeStepGuard guard;
   /* in a run: what is looked at or said once */
-  Since prepared, looked, warned_unconverged, warned_cut;
+  Stamp prepared, looked, warned_unconverged, warned_cut;
   /* rows of those that take no part (Epochs::selection) */
-  Since cleared;
+  Stamp cleared;
   /* and rows of those that do, where motions are found (the same) */
-  Since given_rows;
+  Stamp given_rows;
   /* first step of the run that the last step was of */
   LAMMPS_NS::bigint began = -1;
 
   /* The atoms of this rank whose forces a solve finds: all that take part, without those of rigid clumps
    * that move each by itself. The scene makes the rows of a solve of them. */
-  std::vector<int> solvers;
+  std::vector<int> solved_atoms;
   /* by rows: velocities of the spheres, and forces of lubrication on them */
   std::vector<double> films_v, films_F;
   /* [nlocal], or empty: of strain_power() */
   std::vector<double> films_power;
 
   /* do the scene's rows, and what films need around them, stand as in this step? */
-  Since rows_stand;
+  Stamp rows_stand;
   bool standing() const { return rows_stand.is(epochs.step); }
 
   int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
@@ -175,12 +175,12 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void lubricate();
   void find_films_power();
   sd_status find_forces(sd_solve_report &report);
-  sd_status find_motions(const Solve::Take &take, double drawn, sd_solve_report &report);
+  sd_status find_motions(const Solve::ToAtom &take, double drawn, sd_solve_report &report);
   void assemble(BodyScene::Films films = BodyScene::NO_FILMS);
   Moves moves_of(const std::vector<double> &V) const;
   void look_at_step(const sd_solve_report &report, bool preconditioned);
   void fit_shells();
-  void judge(sd_status status, const sd_solve_report &report);
+  void account_for(sd_status status, const sd_solve_report &report);
   /* by rows: points of the shells as they stand now, from their centre and in space, their radii,
    * and the forces on the fluid that the last solve found */
   struct Points {
@@ -190,7 +190,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Points points_of_now();
   /* S [6 rows] += first moments of forces f [3 rows] on the spheres of clumps, about the centroid */
   void add_on_members(const std::vector<double> &f, double *S) const;
-  void add_wanderers(double part);
+  void add_moments_left(double part);
   /* [6 rows], or empty: what the mean of the first moments lacks, of the solve with noise */
   std::vector<double> moments_left;
   std::vector<double> of_points_on_fluid(std::vector<double> *viscosity);

@@ -30,7 +30,7 @@ void Hydrodynamics::find_films_power()
   scene.to_atoms(1, power.data(), [this](int i, const double *p) { films_power[i] = *p; });
 }
 
-void Hydrodynamics::stand()
+void Hydrodynamics::keep_forces()
 {
   films_power.clear();
   if (!settings.lubrication.on || !ambient.varies()) return;
@@ -43,7 +43,7 @@ void Hydrodynamics::stand()
 void Hydrodynamics::stand_rows()
 {
   if (standing()) return;
-  solvers = ambient.who();
+  solved_atoms = ambient.who();
   if (settings.rigid.on) clump_poses.find();
   surround();
 }
@@ -51,9 +51,9 @@ void Hydrodynamics::stand_rows()
 void Hydrodynamics::surround()
 {
   if (standing()) return;
-  scene.stand(solvers, ambient);
+  scene.stand(solved_atoms, ambient);
   scene.turn_shells();
-  rows_stand.take(epochs.step);
+  rows_stand.set(epochs.step);
 }
 
 /* As the spheres move now, by rows of the scene */

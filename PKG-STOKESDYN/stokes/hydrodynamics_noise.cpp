@@ -30,7 +30,7 @@ void Hydrodynamics::assemble(BodyScene::Films films)
 
 void Hydrodynamics::draw(const Given &known, const Solve::Draw &draw)
 {
-  solvers = ambient.who();
+  solved_atoms = ambient.who();
   given = known;
   moments_left.clear();
   assemble(BodyScene::NOISY_FILMS);
@@ -42,7 +42,7 @@ void Hydrodynamics::stress_of_noise(double tolerance, std::vector<double> &of_at
   sd_solve_report report = {};
   solver.push_alone();
   const double loosest = std::max(settings.tolerance, tolerance);
-  judge(solver.run({Guess::NOISY_MOTIONS, loosest, settings.max_iter}, report), report);
+  account_for(solver.run({Guess::NOISY_MOTIONS, loosest, settings.max_iter}, report), report);
   stress(of_atoms);
 }
 
@@ -66,14 +66,14 @@ void Hydrodynamics::difference(const Given &known, double sign)
   given = known;
   assemble();
   solver.difference(sign);
-  if (shells.settings.on()) add_wanderers(sign * solver.part());
+  if (shells.settings.on()) add_moments_left(sign * solver.part());
 }
 
 /* Of bodies that turn the mean of first moments Q^T l lacks kT sum_k (d_k Q)^T A_k, as slip and load do. */
-void Hydrodynamics::add_wanderers(double part)
+void Hydrodynamics::add_moments_left(double part)
 {
   const Points now = points_that_stand();
-  const std::vector<double> &l = solver.wanderers();
+  const std::vector<double> &l = solver.forces_of_moves();
   const size_t n = scene.size();
   const int *first = shells.first_of_rows();
   std::vector<double> S(6 * n + 6, 0.0), f(3 * n + 3, 0.0);
@@ -91,7 +91,7 @@ void Hydrodynamics::films(const Given &known)
   if (!settings.lubrication.on) return;
   given = known;
   clump_poses.find();
-  bodies.stand_films(solvers);
+  bodies.stand_films(solved_atoms);
 }
 
 }    // namespace StokesDyn

@@ -68,7 +68,7 @@ Hydrodynamics::Points Hydrodynamics::points_that_stand() const
 /* Where no solve was needed in this step the rows of the scene may be those of another one. */
 Hydrodynamics::Points Hydrodynamics::points_of_now()
 {
-  if (memory->points == 0 && !solver.found_now())
+  if (memory->shell_points == 0 && !solver.found_now())
     voice.at_step().fail("the forces of the points are not kept with warm_start no; use warm_start "
                          "yes");
   stand_rows();
@@ -109,7 +109,7 @@ std::vector<double> Hydrodynamics::on_fluid(std::vector<double> *viscosity)
     for (int d = 0; d < 6; d++) all.push_back(d < m ? -F[d] / ambient.viscosity(i) : 0.0);
     if (viscosity) viscosity->push_back(ambient.viscosity(i));
   };
-  if (overdamped && settings.rigid.apart()) {    // these are not kept
+  if (overdamped && settings.rigid.each_alone()) {    // these are not kept
     clump_poses.find();
     clump_poses.velocities(width(), [&](int i, const double *, const double *F) { add(i, F); });
     return all;

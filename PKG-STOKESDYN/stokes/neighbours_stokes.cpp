@@ -3,7 +3,6 @@
 #include "deform_settings.h"
 #include "fixes.h"
 #include "lammps_compat.h"
-#include "neighbours_scaled.h"
 #include "ranks.h"
 
 #include "atom.h"

@@ -36,5 +36,8 @@ struct Contact {
 };
 Contact contact_of(LAMMPS_NS::LAMMPS *lmp);
 
+/* Does hybrid/scaled, the guest, scale forces of pair_style stokes_dynamics? says: by what */
+bool scales_us(const Guest &guest, std::string &says);
+
 }    // namespace StokesDyn
 #endif

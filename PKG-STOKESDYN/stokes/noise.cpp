@@ -56,22 +56,22 @@ void Noise::find_temperature(const Hydrodynamics &hydro)
   of_clumps.assign(6 * hydro.poses().clumps().size() + 6, 0.0);
 }
 
-void Noise::draw(Hydrodynamics &hydro, size_t width, const Take &take)
+void Noise::draw(Hydrodynamics &hydro, size_t width, const ToAtom &take)
 {
   find_temperature(hydro);
-  if (hydro.settings.rigid.apart())
+  if (hydro.settings.rigid.each_alone())
     draw_alone(hydro, width, take);
   else
     draw_together(hydro, width, take);
 }
 
 /* Nobody sees anybody: each sphere by its drag, each clump by the root of its own mobility. */
-void Noise::draw_alone(const Hydrodynamics &hydro, size_t width, const Take &take)
+void Noise::draw_alone(const Hydrodynamics &hydro, size_t width, const ToAtom &take)
 {
-  const ClumpPoses &motion = hydro.poses();
+  const ClumpPoses &poses = hydro.poses();
   const WholeClumps &whole = hydro.scene.whole;
   double normals[6], move[6];
-  for (int i : motion.lone()) {
+  for (int i : poses.lone()) {
     const sd_random_key of_sphere = key(SD_RANDOM_SPHERE);
     sd_random_normals(&of_sphere, atom->tag[i], (int) width, normals);
     for (size_t d = 0; d < width; d++)
@@ -79,13 +79,13 @@ void Noise::draw_alone(const Hydrodynamics &hydro, size_t width, const Take &tak
     take(i, move);
   }
   const sd_random_key of_body = key(SD_RANDOM_BODY);
-  for (size_t c = 0; c < motion.clumps().size(); c++) {
-    const ClumpPoses::Clump &clump = motion.clumps()[c];
-    int64_t lowest = whole.tag[motion.member_of(clump, 0)];
-    for (int k = 1; k < motion.body(clump).n; k++)
-      lowest = std::min(lowest, (int64_t) whole.tag[motion.member_of(clump, k)]);
+  for (size_t c = 0; c < poses.clumps().size(); c++) {
+    const ClumpPoses::Clump &clump = poses.clumps()[c];
+    int64_t lowest = whole.tag[poses.member_of(clump, 0)];
+    for (int k = 1; k < poses.own_clump(clump).n; k++)
+      lowest = std::min(lowest, (int64_t) whole.tag[poses.member_of(clump, k)]);
     sd_random_normals(&of_body, lowest, 6, normals);
-    sd_clump_noise_draw(&motion.shape(clump).noise, clump.pose, clump.eta, normals,
+    sd_clump_noise_draw(&poses.shape(clump).noise, clump.pose, clump.eta, normals,
                         &of_clumps[6 * c]);
   }
 }
@@ -150,7 +150,7 @@ void Noise::no_root(sd_status status) const
                          ", noise_tolerance " + text(tolerance) + "): " + sd_status_string(status));
 }
 
-void Noise::draw_together(Hydrodynamics &hydro, size_t width, const Take &take)
+void Noise::draw_together(Hydrodynamics &hydro, size_t width, const ToAtom &take)
 {
   Forces forces;
   sd_noise_matrix M;
@@ -168,7 +168,7 @@ void Noise::draw_together(Hydrodynamics &hydro, size_t width, const Take &take)
   hydro.scene.to_atoms((int) width, y.data(), take);
 }
 
-Solve::Draw Noise::slip(const Hydrodynamics &hydro)
+Solve::Draw Noise::how_to_draw(const Hydrodynamics &hydro)
 {
   find_temperature(hydro);
   const auto told = [this](sd_status status, const sd_noise_report &report, bool in_parts) {
@@ -198,7 +198,7 @@ void Noise::announce(const Hydrodynamics &hydro, double smallest, double drag) c
 {
   const double step = drag > 0.0 ? scale(update->dt) / sqrt(drag) : 0.0;
   const double radii = step / smallest, skins = step / (0.5 * neighbor->skin);
-  const std::string root = hydro.settings.rigid.apart()
+  const std::string root = hydro.settings.rigid.each_alone()
       ? "the own one of each clump"
       : (divided ? "waves at once, near part by Lanczos's process, " : "Lanczos's process, ") +
           std::to_string(last.products) + " products, error " + text(last.error);
@@ -231,7 +231,7 @@ std::string Noise::drift(const Hydrodynamics &hydro, const std::string &holds) c
   const StokesSettings &s = hydro.settings;
   const Ambient::Settings &fluid = hydro.ambient.settings;
   if (domain->dimension == 2) return "dimension 2, which holds a coordinate";
-  if (s.rigid.apart()) return "";
+  if (s.rigid.each_alone()) return "";
   if (s.shells.on()) return "keyword multiblob" + PAIR;
   if (s.lubrication.on) return "keyword lubrication" + PAIR;
   if (s.rigid.on) return "keyword rigid_clumps" + PAIR + " with clumps that feel each other";
@@ -244,10 +244,10 @@ std::string Noise::drift(const Hydrodynamics &hydro, const std::string &holds) c
 static void refuse_settings(const Voice &keyword, const StokesSettings &s,
                             const Ambient::Settings &fluid)
 {
-  if (s.rigid.apart() && keyword.lmp->domain->dimension == 2)
+  if (s.rigid.each_alone() && keyword.lmp->domain->dimension == 2)
     keyword.fail("keyword clumps_only" + PAIR + ": lone clumps in a plane have a drift: use "
                  "clumps_only no");
-  if (s.rigid.apart() && varies(fluid))
+  if (s.rigid.each_alone() && varies(fluid))
     keyword.fail("keyword clumps_only" + PAIR + ": lone clumps in a viscosity that varies in space "
                  "have a drift: use clumps_only no, or a number for visc");
   if (s.scene.tensor == SD_TENSOR_OSEEN)
@@ -256,7 +256,7 @@ static void refuse_settings(const Voice &keyword, const StokesSettings &s,
   if (s.scene.taper != SD_TAPER_NONE)
     keyword.fail("keyword taper" + PAIR + ": the mobility has a drift, which schemes leave out: "
                  "use cut_off_distance inf");
-  if (std::isfinite(s.scene.cutoff) && !s.rigid.apart())
+  if (std::isfinite(s.scene.cutoff) && !s.rigid.each_alone())
     keyword.fail("keyword cut_off_distance: '" + text(s.scene.cutoff) + "'" + PAIR +
                  ": the mobility has a drift, which schemes leave out: use inf");
 }

@@ -35,7 +35,7 @@ class Noise : protected LAMMPS_NS::Pointers {
   /* Is there a temperature that is not always 0? Otherwise none of the rest is called. */
   bool on() const { return temperature.is_variable() || temperature.number() > 0.0; }
 
-  /* What else the fix does. midpoint: steps that have the drift of the mobility (slip(), below);
+  /* What else the fix does. midpoint: steps that have the drift of the mobility (how_to_draw(), below);
    * holds: the keyword that holds somebody, or nothing */
   struct Ways {
     bool adapts, midpoint;
@@ -52,10 +52,10 @@ class Noise : protected LAMMPS_NS::Pointers {
    * torques; [6] of the clumps of this rank are kept, U of their centre of mobility and W. The
    * velocities of this step have been found. Errors: a temperature below 0; a
    * mobility without a root. */
-  using Take = std::function<void(int i, const double *y)>;
-  void draw(Hydrodynamics &hydro, size_t width, const Take &take);
+  using ToAtom = std::function<void(int i, const double *y)>;
+  void draw(Hydrodynamics &hydro, size_t width, const ToAtom &take);
   /* For the solve of this step, in scheme midpoint. Errors as of draw(). */
-  Solve::Draw slip(const Hydrodynamics &hydro);
+  Solve::Draw how_to_draw(const Hydrodynamics &hydro);
   /* To which that solve is made: slow modes of velocities are off by less than those of the root */
   double tolerance_of_solve() const { return tolerance / 3.0; }
   /* sqrt(2 kT dt) for a step dt from there */
@@ -92,9 +92,9 @@ class Noise : protected LAMMPS_NS::Pointers {
   void refuse(const Hydrodynamics &hydro, const Ways &ways) const;
   void find_temperature(const Hydrodynamics &hydro);
   [[noreturn]] void no_root(sd_status status) const;
-  void draw_alone(const Hydrodynamics &hydro, size_t width, const Take &take);
+  void draw_alone(const Hydrodynamics &hydro, size_t width, const ToAtom &take);
   void place(Hydrodynamics &hydro, size_t width, struct Forces &forces, sd_noise_matrix &M);
-  void draw_together(Hydrodynamics &hydro, size_t width, const Take &take);
+  void draw_together(Hydrodynamics &hydro, size_t width, const ToAtom &take);
 };
 
 }    // namespace StokesDyn

@@ -60,17 +60,17 @@ void PairStokesDynamics::compute(int eflag, int vflag)
   if (update->ntimestep == update->firststep + 1) look_at_neighbours();
   hydro.begin();
   check_images(voice, hydro.ambient.jumps());
-  const Verdict verdict = judge();
+  const Verdict verdict = what_is_due();
   if (verdict != STANDS) {
     hydro.clumps();
     if (verdict == SOLVE) hydro.solve();
     hydro.drag();
   } else
-    hydro.stand();
+    hydro.keep_forces();
   if (hydro.settings.add_force) add();
   report();
   asked = {update->ntimestep, neighbor->ncalls};
-  asked_in.take(hydro.epochs.run);
+  asked_in.set(hydro.epochs.run);
 }
 
 /* Some commands try what forces and energies would be if atoms stood elsewhere (fix numdiff, compute
@@ -94,14 +94,14 @@ double PairStokesDynamics::single(int, int, int, int, double, double, double, do
 /* v' is due every update_every steps, and at once when the spheres are not those of the last solve:
  * none lacks a v', none has gone, and nobody has displaced them between two runs. Whether they were is
  * known of a run that begins in the step in which the last one ended: others solve. */
-PairStokesDynamics::Verdict PairStokesDynamics::judge()
+PairStokesDynamics::Verdict PairStokesDynamics::what_is_due()
 {
   const State *memory = hydro.memory;
   State::Global &global = hydro.memory->global;
   const double step = update->ntimestep, period = hydro.settings.update_every;
   const bool continued = update->setupflag && step == global.last_step &&
-      global.reported >= (double) hydro.reported;
-  global.reported = hydro.reported;
+      global.reported >= (double) hydro.reports_perturbation;
+  global.reported = hydro.reports_perturbation;
 
   enum { SPHERES, NEWCOMERS, DISPLACED, PUSHED, COUNTS };
   double count[COUNTS] = {(double) hydro.ambient.who().size(), 0.0, 0.0, 0.0};
@@ -269,7 +269,7 @@ void PairStokesDynamics::look_for_fixes()
   const auto fixes = fixes_of<FixStokesDynamics>(lmp);
   bool applied = hydro.settings.add_force;
   for (const auto *fix : fixes) applied = applied || fix->applies();
-  hydro.reported = !fixes.empty();
+  hydro.reports_perturbation = !fixes.empty();
   hydro.overdamped = FixStokesDynamicsOverdamped::prepare(lmp);
   if (applied || hydro.overdamped || warned_nobody_applies) return;
   warned_nobody_applies = true;

@@ -47,7 +47,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   struct {
     LAMMPS_NS::bigint step, builds;
   } asked = {-1, -1};
-  Since asked_in;
+  Stamp asked_in;
   Neighbourhood neighbourhood;
   void look_at_neighbours();
 
@@ -58,7 +58,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
     SOLVE
   };
   bool asked_again() const;
-  Verdict judge();
+  Verdict what_is_due();
   void add();
   void report();
 

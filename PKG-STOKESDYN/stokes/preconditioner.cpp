@@ -82,7 +82,7 @@ void Preconditioner::refresh_places()
     now = {domain->prd[0], domain->prd[1], domain->prd[2], domain->xy, domain->xz, domain->yz};
   if (without == 0.0 && !sd_moved_too_far(sums) && *box == now) return;
   *box = now;
-  for (int i : scene.who()) std::copy_n(atom->x[i], 3, places->give(i));
+  for (int i : scene.who()) std::copy_n(atom->x[i], 3, places->writable(i));
 }
 
 /* x: where the spheres stood, in the order of the preconditioner's rows */
@@ -175,10 +175,10 @@ sd_status Preconditioner::apply(void *ctx, const double *r, double *z)
   Preconditioner *p = static_cast<Preconditioner *>(ctx);
   return callback([=] {
     const size_t width = p->width, own = width * p->scene.size();
-    if (!p->put_in.is(p->scene.since().step)) {
+    if (!p->put_in.is(p->scene.all_epochs().step)) {
       const sd_status status = p->put();
       if (status != SD_OK) return status;
-      p->put_in.take(p->scene.since().step);
+      p->put_in.set(p->scene.all_epochs().step);
     }
     p->in.resize(width * p->n + 1);
     p->out.resize(width * p->n + 1);

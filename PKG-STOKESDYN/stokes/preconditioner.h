@@ -47,7 +47,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   // of this solve
   bool cloud = false;
   int n = 0, width = 3;
-  Since put_in;
+  Stamp put_in;
   AtomRows *places = nullptr;
   std::vector<double> *box = nullptr;
 

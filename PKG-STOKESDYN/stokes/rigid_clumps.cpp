@@ -288,14 +288,14 @@ void RigidClumps::arrange()
 
 // --- as they stand now ------------------------------------------------------------------------------
 
-const std::vector<RigidClumps::Body> &RigidClumps::find()
+const std::vector<RigidClumps::OwnClump> &RigidClumps::find()
 {
   if (!recognised.is(epochs.members)) recognise();
-  recognised.take(epochs.members);
+  recognised.set(epochs.members);
   return bodies;
 }
 
-bool RigidClumps::fits(const Body &body, const double *radii, const double *x, double *pose) const
+bool RigidClumps::fits(const OwnClump &body, const double *radii, const double *x, double *pose) const
 {
   const sd_shape &shape = body.shape->shape;
   const double most = SD_SHAPE_TOLERANCE * shape.size;
@@ -304,7 +304,7 @@ bool RigidClumps::fits(const Body &body, const double *radii, const double *x, d
   return sd_shape_pose(&shape, x, pose, pose + 9) <= most;
 }
 
-bool RigidClumps::settle(int64_t split, const std::vector<int64_t> &bent)
+bool RigidClumps::loosen(int64_t split, const std::vector<int64_t> &bent)
 {
   int64_t first[2] = {split, NOBODY};
   for (int64_t molecule : bent) first[1] = std::min(first[1], molecule);

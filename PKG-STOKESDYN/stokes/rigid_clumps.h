@@ -26,7 +26,7 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
     bool on = false, auto_resolve = false;
     /* clumps_only: no clump feels another, and each has a table of its own forces */
     bool clumps_only = false;
-    bool apart() const { return on && clumps_only; }
+    bool each_alone() const { return on && clumps_only; }
   };
   const Settings &settings;
 
@@ -48,25 +48,25 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
 
   /* A clump of this rank's; its spheres, in the order of the shape, are begin ... begin + n - 1 of
    * members(), which are members of whole. atom: the one of them with the lowest tag, which is here */
-  struct Body {
+  struct OwnClump {
     const ClumpShape *shape;
     int64_t molecule;
     int begin, n, atom;
   };
   /* All of them, looked at anew if LAMMPS has re-neighboured. Errors: one that is not rigid (yes). */
-  const std::vector<Body> &find();
+  const std::vector<OwnClump> &find();
   /* One of them, by its place there, until they are looked at anew or forgotten */
-  const Body &body(int number) const { return bodies[number]; }
+  const OwnClump &own_clump(int number) const { return bodies[number]; }
   const std::vector<int> &members() const { return member; }
   /* and back: which of members() is a member of whole, -1: it is in none of the bodies */
   const std::vector<int> &places() const { return place; }
   /* Do the spheres of a body, with these radii at x [3 n], stand as its shape says? pose [12] out */
-  bool fits(const Body &body, const double *radii, const double *x, double *pose) const;
+  bool fits(const OwnClump &body, const double *radii, const double *x, double *pose) const;
   /* Molecule IDs of a clump of which not all spheres are selected, NOBODY: there is none, and of
    * those that do not fit. Returns whether these are loose now, and the bodies others; otherwise
    * errors. On all ranks together. */
   static constexpr int64_t NOBODY = std::numeric_limits<int64_t>::max();
-  bool settle(int64_t split, const std::vector<int64_t> &bent);
+  bool loosen(int64_t split, const std::vector<int64_t> &bent);
 
   double memory_usage() const;
 
@@ -83,10 +83,10 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   std::map<int64_t, Known> known;    // by molecule ID: clumps that this rank owns
   std::set<int64_t> loose_molecules;
   /* the members for which they have been (Epochs::members) */
-  Since recognised;
+  Stamp recognised;
 
   /* since the last re-neighbouring */
-  std::vector<Body> bodies;
+  std::vector<OwnClump> bodies;
   std::vector<int> member, place;
 
   std::vector<double> radius;    // by members

@@ -30,11 +30,11 @@ void Scene::out_of_memory()
 /* Who has which row, and who that is. */
 void Scene::find_rows()
 {
-  loose.clear();
+  lone_atoms.clear();
   row_of.clear();
   for (int i : own)
-    if (!settings.whole || atom->molecule[i] == 0) loose.push_back(i);
-  size_t n = loose.size();
+    if (!settings.whole || atom->molecule[i] == 0) lone_atoms.push_back(i);
+  size_t n = lone_atoms.size();
   if (settings.whole) {
     std::vector<char> active(atom->nlocal + 1, 0);
     for (int i : own) active[i] = 1;
@@ -68,7 +68,7 @@ void Scene::stand(const std::vector<int> &who, const Ambient &ambient)
     epochs.rows.advance();
     find_rows();
   }
-  rows_found.take(epochs.lists);
+  rows_found.set(epochs.lists);
   jumping = ambient.jumps();
   if (jumping) std::copy_n(ambient.jumps(), 6, jumps);
   const size_t n = tags.size();
@@ -88,7 +88,7 @@ void Scene::drift(double *rows, int width, double sign) const
   for (int d = 0; d < 6; d++) signed_jumps[d] = sign * jumps[d];
   for (size_t m = 0; m < row_of.size() && jumping; m++)
     if (row_of[m] >= 0)
-      sd_add_edges(signed_jumps, &whole.steps[3 * m], rows + width * (size_t) row_of[m]);
+      sd_add_edges(signed_jumps, &whole.edges[3 * m], rows + width * (size_t) row_of[m]);
 }
 
 void Scene::surround(double reach, const std::string &keyword)
@@ -174,7 +174,7 @@ void Scene::find_pairs()
   if (status != SD_OK) out_of_memory();
   const int sees = candidates.first[n] > 0 || (settings.boundary.has_images() && n > 0);
   somebody_sees = largest_of_all(world, sees);
-  pairs_found.take(epochs.rows);
+  pairs_found.set(epochs.rows);
 }
 
 // Products of all pairs of fewer take a tenth of a millisecond, and keep all digits.
@@ -259,7 +259,7 @@ void Scene::gather()
     });
     place_of.resize(n_all);
     for (int k = 0; k < n_all; k++) place_of[by_tag[k]] = k;
-    sorted.take(epochs.rows);
+    sorted.set(epochs.rows);
   }
   all_x.resize(3 * (size_t) n_all);
   for (auto *v : {&all_a, &all_w}) v->resize(n_all);

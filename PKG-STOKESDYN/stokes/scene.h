@@ -74,7 +74,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* Which spheres of which ranks the engine sees, since the last update(). */
   sd_view view() const { return engine->view; }
   /* Since when all of this is as it is */
-  const Epochs &since() const { return epochs; }
+  const Epochs &all_epochs() const { return epochs; }
   WholeClumps whole;
   /* Spheres are shells of points, which are what the engine sees; nullptr: they are points */
   Shells *shells = nullptr;
@@ -102,7 +102,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   int64_t molecule(int k) const { return molecules[k]; }
   const std::vector<int64_t> &all_molecules() const { return molecules; }
   /* Rows of this rank's lone spheres come first; whole: row of a member, -1: it takes no part */
-  int lone() const { return (int) loose.size(); }
+  int lone() const { return (int) lone_atoms.size(); }
   int row_of_member(int m) const { return row_of[m]; }
   /* Rows [width size()], at least one: row(i, out) writes what goes of atom i, which may be one that
    * takes no part. And back: take(i, row) for every atom of this rank that takes part. On all ranks
@@ -120,8 +120,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* The same of rows wherever they are: room(k), at(k) [width]; nullptr: that one does not go */
   template <class Row, class Room> void rows_to(int width, const Row &row, const Room &room) const
   {
-    for (size_t k = 0; k < loose.size(); k++)
-      if (double *out = room(k)) row(loose[k], out);
+    for (size_t k = 0; k < lone_atoms.size(); k++)
+      if (double *out = room(k)) row(lone_atoms[k], out);
     if (!settings.whole) return;
     whole.gather_to(width, row, [&](size_t m) {
       return row_of[m] >= 0 ? room(row_of[m]) : nullptr;
@@ -129,8 +129,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   }
   template <class At, class Take> void some_to_atoms(int width, const At &at, const Take &take) const
   {
-    for (size_t k = 0; k < loose.size(); k++)
-      if (const double *row = at(k)) take(loose[k], row);
+    for (size_t k = 0; k < lone_atoms.size(); k++)
+      if (const double *row = at(k)) take(lone_atoms[k], row);
     if (!settings.whole) return;
     const auto all = [&](const auto &give) {
       for (size_t m = 0; m < row_of.size(); m++)
@@ -174,7 +174,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   void set_open_box(const std::vector<double> &box);
   sd_law law() const
   {
-    return {settings.tensor, settings.taper, settings.cutoff, settings.boundary.image()};
+    return {settings.tensor, settings.taper, settings.cutoff, settings.boundary.image_wall()};
   }
 
   /* View ALL: the spheres of all ranks that take part, in order of tag, the same on every rank. */
@@ -202,10 +202,10 @@ class Scene : protected LAMMPS_NS::Pointers {
   const Voice voice;
   Epochs &epochs;
 
-  Since rows_found, pairs_found, sorted;
+  Stamp rows_found, pairs_found, sorted;
   bool somebody_sees = false;
   /* atoms that take part; those whose rows are the first here; rows of the members of whole */
-  std::vector<int> own, loose, row_of;
+  std::vector<int> own, lone_atoms, row_of;
   std::vector<int64_t> tags, molecules;
   /* rows, then copies */
   std::vector<double> x, a, w;
@@ -231,7 +231,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   sd_slab slab = {};
   /* its parameters, as they were last told */
   std::string said;
-  Since told;
+  Stamp told;
 
   const sd_mobility_engine *engine = &sd_mobility_list;
   Owned<sd_mobility, sd_mobility_free> omega;

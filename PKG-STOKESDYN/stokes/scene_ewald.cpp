@@ -85,7 +85,7 @@ sd_ewald_sizes Scene::measure(sd_ewald_box &box) const
       hi[d] = most[4 + d];
     }
     if (box.periodic) box = {};
-    const sd_wall &wall = settings.boundary.image();
+    const sd_wall &wall = settings.boundary.image_wall();
     sd_ewald_box_around(&box, wall.sign ? wall.axis : -1, lo, hi, most[0]);
   }
   return all;
@@ -103,7 +103,7 @@ bool Scene::split()
   ewald.count = sizes.all.count;
   second_level = {};
   if (sizes.all.count == 0.0) return must;
-  const sd_wall &wall = settings.boundary.image();
+  const sd_wall &wall = settings.boundary.image_wall();
   const double all_pairs =
       sizes.all.count * sizes.all.count * (wall.sign ? SD_PAIR_AT_WALL : 1.0);
   const double tolerance = settings.far_field_tolerance;

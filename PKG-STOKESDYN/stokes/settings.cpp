@@ -21,7 +21,7 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   if (!in.given("cut_off_distance")) scene.cutoff = INFINITY;
   rigid.clumps_only = scene.clumps_only;
   check(in);
-  settle_walls(in);
+  check_with_walls(in);
   if (!grid_file.empty()) {
     ambient.grid = FlowFile::read(Voice(lmp, COMMAND).of("keyword fluid_velocity"), grid_file);
     in.require(!ambient.grid_has_visc || ambient.grid->has_viscosity(),
@@ -250,7 +250,7 @@ void StokesSettings::check(const Keywords &in) const
 
 /* What does not go with a wall, or with flow; torques of spheres of one point, for whose images there is no Ewald
  * sum, are summed over all pairs. */
-void StokesSettings::settle_walls(const Keywords &in)
+void StokesSettings::check_with_walls(const Keywords &in)
 {
   const Boundary &boundary = scene.boundary;
   in.require(!in.given("flow") || boundary.walls == 2,
@@ -265,7 +265,7 @@ void StokesSettings::settle_walls(const Keywords &in)
              "place of rotation yes, or far_field auto, which takes all pairs");
   in.require(precondition != Preconditioner::WAVES,
              "keyword wall: precondition waves is for periodic boxes: use precondition auto");
-  in.require(!rigid.apart(),
+  in.require(!rigid.each_alone(),
              "keyword wall: with clumps_only yes rigid clumps have a resistance that is computed "
              "once, without the wall: use cut_off_distance inf and multiblob 12");
   in.require(rigid.shell == 1,

@@ -58,7 +58,7 @@ struct StokesSettings {
   void take_lubrication_gap(Keywords &in);
   void take_lubrication_range(Keywords &in);
   void check(const Keywords &in) const;
-  void settle_walls(const Keywords &in);
+  void check_with_walls(const Keywords &in);
   void check_close_spheres(const Keywords &in, bool all_pairs) const;
 };
 

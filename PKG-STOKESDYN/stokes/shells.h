@@ -107,7 +107,7 @@ class Shells : protected LAMMPS_NS::Pointers {
 
  private:
   const Voice voice;
-  Since chosen;
+  Stamp chosen;
   std::vector<sd_multiblob> models;
   std::vector<std::unique_ptr<Owned<sd_multiblob_shape, sd_multiblob_shape_free>>> lone;
   std::vector<sd_faces_pattern> patterns;

@@ -20,7 +20,7 @@ double Solve::memory_usage() const
 {
   double numbers = (double) room;
   for (const auto *array : {&exerted, &v, &V, &l, &v_with_l, &F, &drag, &spin, &work, &slip, &pushed, &slip_left,
-                            &load_left, &wandering})
+                            &load_left, &of_moves})
     numbers += (double) array->capacity();
   return sizeof(double) * numbers + preconditioner.memory_usage();
 }
@@ -29,7 +29,7 @@ double Solve::memory_usage() const
 
 sd_status Solve::run(const How &how, sd_solve_report &report)
 {
-  found.take(scene.since().step);
+  found.set(scene.all_epochs().step);
   return solve_bodies(how, guess.recall(how.asked), report);
 }
 
@@ -38,7 +38,7 @@ sd_status Solve::resist(const std::vector<double> &motions, int max_iter, std::v
   const size_t n = scene.size();
   std::vector<double> exerted_before = exerted, l_before = l, v_before = v_with_l;
   sd_solve_report unused = {};
-  bodies.pass(motions, false);
+  bodies.rest_in(motions, false);
   const sd_status status = solve_bodies({Guess::FORCES, 1e-2, max_iter}, guess.none(), unused);
   for (size_t j = 0; j < bodies.width * n; j++) forces[j] = -exerted[j];
   exerted.swap(exerted_before);
@@ -70,7 +70,7 @@ sd_status Solve::solve_bodies(const How &how, Guess::Start start, sd_solve_repor
   return status;
 }
 
-void Solve::hand_out(const Take &take) const
+void Solve::hand_out(const ToAtom &take) const
 {
   const size_t m = bodies.width, n = scene.size();
   std::vector<double> atoms_v = v, moved(2 * m * n + 2 * m);
@@ -133,7 +133,7 @@ sd_status Solve::gradients(const How &how, sd_solve_report &report)
   const Guess::Start start = guess.recall(how.asked);
   A.warm = start.warm;
   for (size_t j = 0; j < bodies.flow.size() && A.warm; j++) F[j] = -start.l[j];
-  preconditioner.attach(A, guess.memory->places, guess.memory->global.places_box);
+  preconditioner.attach(A, guess.memory->made_at, guess.memory->global.made_in_box);
   const sd_status status = sd_solve_gradients(&A, bodies.flow.data(), how.tolerance, how.max_iter,
                                               F.data(), make_room(), &report);
   take_forces();

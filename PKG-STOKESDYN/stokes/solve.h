@@ -47,7 +47,7 @@ class Solve : protected LAMMPS_NS::Pointers {
   sd_status substitution(const How &how, sd_solve_report &report);
   sd_status gradients(const How &how, sd_solve_report &report);
   /* What was found to the memory */
-  void keep(Guess::Question asked) { guess.keep(asked, *this); }
+  void keep(Guess::Question asked) { guess.keep(asked, {l, v_with_l, exerted}); }
   /* [width spheres] forces on spheres that move so in a fluid at rest, within 1 %. What the last solve has
    * found stays. */
   sd_status resist(const std::vector<double> &motions, int max_iter, std::vector<double> &forces);
@@ -59,12 +59,12 @@ class Solve : protected LAMMPS_NS::Pointers {
    * them in a guess */
   std::vector<double> l, v_with_l;
   /* Are they of this step? With shells: forces of the points, of this step or of the last solve */
-  bool found_now() const { return found.is(scene.since().step); }
+  bool found_now() const { return found.is(scene.all_epochs().step); }
   std::vector<double> points_now() const { return found_now() ? l : guess.points_of_last_solve(); }
   /* What becomes of atom i: velocity, with torques angular velocity, and force of the fluid on it,
    * with torque: v and F [width] */
-  using Take = ClumpPoses::Take;
-  void hand_out(const Take &take) const;
+  using ToAtom = ClumpPoses::ToAtom;
+  void hand_out(const ToAtom &take) const;
 
   // --- noise: a slip of the points and forces of films, as they are kept for the solve of a step
 
@@ -86,12 +86,13 @@ class Solve : protected LAMMPS_NS::Pointers {
   /* After draw(): is there a part of the drift that the mean of one solve lacks? The same on all ranks. It is
    *   slip    kT sum_k (d_k M') A_k  =  <[M'(x + e W) - M'(x - e W)] A W> kT/(2 e)
    *   torque -kT sum_k (d_k K)^T A_k    likewise,      W [6 bodies] random, of variance 1 or e
-   * wander() gives e W. difference(sign) adds what bodies show that have been assembled at x + sign e W.
-   * wanderers() is A W [points] and part() is kT/(2 e), for the stress, which lacks something as well. */
+   * random_moves() gives e W. difference(sign) adds what bodies show that have been assembled at
+   * x + sign e W. forces_of_moves() is A W [points] and part() is kT/(2 e), for the stress, which lacks
+   * something as well. */
   bool needs_differences() const { return differs; }
-  std::vector<double> wander(const Draw &draw);
+  std::vector<double> random_moves(const Draw &draw);
   void difference(double sign);
-  const std::vector<double> &wanderers() const { return wandering; }
+  const std::vector<double> &forces_of_moves() const { return of_moves; }
   double part() const { return kT / (2.0 * reach); }
   /* When the bodies have been assembled for the solve. push(): what was drawn, and the rest of the drift, is
    * added to their flow and loads; push_alone(): it takes the place of these, in a fluid at rest;
@@ -111,13 +112,13 @@ class Solve : protected LAMMPS_NS::Pointers {
   Scene &scene;
   BodyScene &bodies;
   const Ambient &ambient;
-  Since found;
+  Stamp found;
 
   /* by spheres: force of the fluid, what system() points to; scratch of sd_bodies */
   std::vector<double> F, drag, spin, work;
   /* what was drawn: by rows, by spheres; what is left of the drift, likewise; A W by rows, e and kT of it */
   BodyNoise shapes;
-  std::vector<double> slip, pushed, slip_left, load_left, wandering;
+  std::vector<double> slip, pushed, slip_left, load_left, of_moves;
   std::vector<const sd_body_follow *> follow;
   bool differs = false;
   double reach = 0.0, kT = 0.0;

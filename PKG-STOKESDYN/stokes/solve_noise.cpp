@@ -18,7 +18,7 @@ namespace StokesDyn {
 /* Of each sphere, those of its points one after the other */
 std::vector<double> Solve::numbers(const sd_random_key &of_spheres) const
 {
-  std::vector<double> w(sd_bodies_rows(&bodies.bodies) + 1);
+  std::vector<double> w(sd_bodies_unknowns(&bodies.bodies) + 1);
   double *next = w.data();
   for (size_t k = 0; k < (size_t) scene.size(); k++) {
     const int m = scene.shells ? 3 * scene.shells->points_of_row(k) : bodies.width;
@@ -33,7 +33,7 @@ std::vector<double> Solve::numbers(const sd_random_key &of_spheres) const
 void Solve::draw_slip(const Draw &draw)
 {
   const sd_bodies &A = bodies.bodies;
-  const size_t rows = sd_bodies_rows(&A);
+  const size_t rows = sd_bodies_unknowns(&A);
   const Voice voice(lmp, StokesSettings::COMMAND);
   const std::vector<double> w = numbers(draw.of_spheres);
   std::vector<double> waves(rows + 1);
@@ -105,7 +105,7 @@ void Solve::draw(const Draw &draw)
   const sd_bodies &A = bodies.bodies;
   const size_t count = sd_bodies_count(&A);
   const Voice voice = Voice(lmp, StokesSettings::COMMAND).at_step();
-  shapes.begin(scene.since().run);
+  shapes.begin(scene.all_epochs().run);
   kT = draw.kT;
   draw_slip(draw);
   pushed.assign(sd_bodies_loads(&A) + bodies.width, 0.0);
@@ -120,7 +120,7 @@ void Solve::draw(const Draw &draw)
   find_followers();
   of_points.assign(6 * count + 6, 0.0);
   of_films.assign(6 * count + 6, 0.0);
-  std::vector<double> scratch(24 * count + 12 * (size_t) scene.size() + sd_bodies_rows(&A) + 1);
+  std::vector<double> scratch(24 * count + 12 * (size_t) scene.size() + sd_bodies_unknowns(&A) + 1);
   const sd_drifter d = drifter();
   const sd_drifter_push all = {bodies.u.data(), slip.data(), bodies.F.data(), pushed.data(),
                                bodies.velocities.empty() ? nullptr : bodies.velocities.data(), 0.1 * draw.tolerance};
@@ -135,7 +135,7 @@ void Solve::draw(const Draw &draw)
 /* Over the radius of the smallest sphere: the error falls with its square, that of rounding grows. */
 static const double FAR = 1e-4;
 
-std::vector<double> Solve::wander(const Draw &draw)
+std::vector<double> Solve::random_moves(const Draw &draw)
 {
   const sd_bodies &A = bodies.bodies;
   const size_t count = sd_bodies_count(&A), lone = bodies.first_clump();
@@ -161,9 +161,9 @@ std::vector<double> Solve::wander(const Draw &draw)
       unit[6 * b + d] = normals[d] * length;
     }
   }
-  wandering.assign(sd_bodies_rows(&A) + 1, 0.0);
+  of_moves.assign(sd_bodies_unknowns(&A) + 1, 0.0);
   const sd_drifter d = drifter();
-  sd_drifter_spread(&A, &d, unit.data(), wandering.data());
+  sd_drifter_spread(&A, &d, unit.data(), of_moves.data());
   for (double &w : W) w *= reach;
   return W;
 }
@@ -173,8 +173,8 @@ void Solve::difference(double sign)
 {
   const sd_bodies &A = bodies.bodies;
   const size_t count = sd_bodies_count(&A), n = scene.size();
-  std::vector<double> scratch(18 * count + 6 * n + 2 * sd_bodies_rows(&A) + 1), load(6 * count + 6);
-  const sd_status status = sd_drifter_difference(&A, wandering.data(), sign * kT / (2.0 * reach), scratch.data(),
+  std::vector<double> scratch(18 * count + 6 * n + 2 * sd_bodies_unknowns(&A) + 1), load(6 * count + 6);
+  const sd_status status = sd_drifter_difference(&A, of_moves.data(), sign * kT / (2.0 * reach), scratch.data(),
                                                  slip_left.data(), load.data());
   if (status != SD_OK)
     fail_by(Voice(lmp, StokesSettings::COMMAND).at_step().of("the drift by differences"), status);
@@ -189,7 +189,7 @@ void Solve::difference(double sign)
 
 void Solve::push()
 {
-  for (long j = 0; j < sd_bodies_rows(&bodies.bodies); j++) bodies.u[j] += slip[j] + slip_left[j];
+  for (long j = 0; j < sd_bodies_unknowns(&bodies.bodies); j++) bodies.u[j] += slip[j] + slip_left[j];
   for (long j = 0; j < sd_bodies_loads(&bodies.bodies); j++) bodies.F[j] += pushed[j] + load_left[j];
 }
 

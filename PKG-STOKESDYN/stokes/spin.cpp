@@ -36,7 +36,7 @@ void Spin::init(const Hydrodynamics &hydro, int held_bit)
   if (!hydro.rotation())
     keyword.fail("keyword rotation" + pair + " must be yes, or keyword multiblob given: points "
                  "without torques do not spin");
-  if (hydro.settings.rigid.apart())
+  if (hydro.settings.rigid.each_alone())
     keyword.fail("it is for spheres that feel each other: use clumps_only no" + pair);
   if (domain->dimension == 2 && (omega[0] != 0.0 || omega[1] != 0.0))
     keyword.fail("in two dimensions spheres spin about z alone: wx and wy must be 0");
@@ -51,7 +51,7 @@ void Spin::init(const Hydrodynamics &hydro, int held_bit)
     keyword.fail("atom " + std::to_string(both) + " is in the group of keyword held or pin as well: it must "
                  "be in one of them only");
   for (int i = 0; i < atom->nlocal; i++)
-    if (!(atom->mask[i] & whom.bit)) slipping.take(i);    // it may have been in the group before
+    if (!(atom->mask[i] & whom.bit)) overloaded.erase(i);    // it may have been in the group before
 }
 
 bool Spin::turns(int i, double W[3]) const
@@ -67,8 +67,8 @@ void Spin::push(int i, double *torque) const
   for (int d = 0; d < 3; d++) torque[d] += sign(i) * most * axis[d];
 }
 
-/* A sphere that slips and has caught up with the field is held again. */
-void Spin::look(int i, const double *W, const double *by_fluid, const double *torque)
+/* An overloaded sphere that has caught up with the field is held again. */
+void Spin::note_found(int i, const double *W, const double *by_fluid, const double *torque)
 {
   if (!(atom->mask[i] & whom.bit) || most == 0.0) return;
   const double now = sign(i);
@@ -79,18 +79,18 @@ void Spin::look(int i, const double *W, const double *by_fluid, const double *to
   else if (now * (sd_dot(W, axis) - sd_dot(omega, axis)) >= 0.0)
     next = 0.0;
   if (next == 0.0 && now == 0.0)
-    slipping.take(i);
+    overloaded.erase(i);
   else
-    slipping.give(i)[1] = next;
+    overloaded.writable(i)[1] = next;
 }
 
 void Spin::advance()
 {
   for (int i = 0; i < atom->nlocal && most > 0.0; i++)
-    if (slipping.has(i)) slipping.row(i)[0] = slipping[i][1];
+    if (overloaded.has(i)) overloaded.row(i)[0] = overloaded[i][1];
 }
 
-double Spin::slip() const
+double Spin::count_overloaded() const
 {
   double mine = 0.0;
   for (int i = 0; i < atom->nlocal; i++) mine += sign(i) != 0.0;

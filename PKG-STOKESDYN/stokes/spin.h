@@ -1,9 +1,9 @@
 /* Spheres that a field keeps spinning, for fix stokes_dynamics/overdamped: their angular velocity is
- * given and the torque that the field needs for it is found, up to a largest one. A sphere that
- * would need more slips: the largest torque drives it, and it is slower than the field, or brakes
- * it, and it is faster.
+ * given and the torque that the field needs for it is found, up to a largest one. A sphere that would need
+ * more is overloaded: the largest torque drives it, and it is slower than the field, or brakes it, and it is
+ * faster.
  *
- * Who slips is decided once a step, by the velocities and torques just found, for the step after
+ * Who is overloaded is decided once a step, by the velocities and torques just found, for the step after
  * the next move: both solves of a step (scheme midpoint) then hold the same coordinates. */
 #ifndef SD_STOKES_SPIN_H
 #define SD_STOKES_SPIN_H
@@ -19,10 +19,10 @@ class Hydrodynamics;
 
 class Spin : protected LAMMPS_NS::Pointers {
  public:
-  /* [2] of a sphere that slips, or will: 0 or the sign of the torque along the axis, now and next */
-  AtomRows slipping;
+  /* [2] of one that is overloaded, or will be: 0 or the sign of the torque along the axis, now and next */
+  AtomRows overloaded;
 
-  explicit Spin(const Voice &voice) : Pointers(voice.lmp), slipping(2), voice(voice) {}
+  explicit Spin(const Voice &voice) : Pointers(voice.lmp), overloaded(2), voice(voice) {}
 
   /* GROUP wx wy wz [most] */
   void read(Keywords &in);
@@ -33,15 +33,15 @@ class Spin : protected LAMMPS_NS::Pointers {
 
   /* Is the angular velocity W of atom i given now? */
   bool turns(int i, double W[3]) const;
-  /* The torque of the field on those that slip is added to theirs. */
+  /* The torque of the field on those overloaded is added to theirs. */
   void push(int i, double *torque) const;
   /* What a solve has found: W, and the torque of the fluid. torque: of all but the field, with
    * push() */
-  void look(int i, const double *W, const double *by_fluid, const double *torque);
+  void note_found(int i, const double *W, const double *by_fluid, const double *torque);
   /* Positions have advanced: next is now. */
   void advance();
-  /* How many slip, on all ranks */
-  double slip() const;
+  /* How many are overloaded, on all ranks */
+  double count_overloaded() const;
 
  private:
   const Voice voice;
@@ -49,7 +49,7 @@ class Spin : protected LAMMPS_NS::Pointers {
   /* most: 0, no limit */
   double omega[3] = {0.0}, axis[3] = {0.0}, most = 0.0;
 
-  double sign(int i) const { return slipping[i][0]; }
+  double sign(int i) const { return overloaded[i][0]; }
 };
 
 }    // namespace StokesDyn

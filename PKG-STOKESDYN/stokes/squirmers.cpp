@@ -31,7 +31,7 @@ void Squirmers::init(const Hydrodynamics &hydro, int groupbit)
   if (!hydro.settings.shells.on())
     voice.fail("single points have no surface that slips: use multiblob 12 or 42 of " + style +
                ", or push spheres without a flow of their own by fix propel/self");
-  if (hydro.settings.rigid.apart())
+  if (hydro.settings.rigid.each_alone())
     voice.fail("it is for spheres that feel each other: use clumps_only no of " + style);
   whom.require_moved(voice, groupbit);
   if (const tagint blind = first_atom(lmp, [this](int i) {

@@ -145,12 +145,12 @@ void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report,
     lambda = std::min(lambda > 0.0 ? lambda : 1.0, smallest_of_all(world, least_lone_mobility(scene)));
   if (!(lambda > 0.0)) return;
   if (solves < state.due && state.limit > 0.0 && lambda >= state.lambda_min) return;
-  settle(system, scene, lambda, solves, [&] { return compute(system, scene); });
+  conclude(system, scene, lambda, solves, [&] { return compute(system, scene); });
 }
 
 /* By the bounds from lambda, and mu in units of the shortest time where it may be near */
-void TimeStepGuard::settle(const sd_system &system, Scene &scene, double lambda, double solves,
-                           const std::function<double()> &compute_mu)
+void TimeStepGuard::conclude(const sd_system &system, Scene &scene, double lambda, double solves,
+                             const std::function<double()> &compute_mu)
 {
   const Times tau = weigh(system, scene, nullptr);
   if (std::isinf(tau.shortest)) {
@@ -199,7 +199,7 @@ void TimeStepGuard::look_at_shells(const sd_system &system, const Resist &resist
                                    double solves)
 {
   if (solves < state.due && state.limit > 0.0) return;
-  settle(system, scene, 1.0, solves, [&] { return compute_of_shells(system, resist, scene); });
+  conclude(system, scene, 1.0, solves, [&] { return compute_of_shells(system, resist, scene); });
 }
 
 /* Beside films the drag is nothing, so that the limit is 2 over their fastest rate. */

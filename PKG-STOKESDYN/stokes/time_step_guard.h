@@ -79,8 +79,8 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
   std::vector<double> inertia(Scene &scene) const;
   double compute(const sd_system &system, Scene &scene);
   double compute_of_shells(const sd_system &system, const Resist &resist, Scene &scene);
-  void settle(const sd_system &system, Scene &scene, double lambda, double solves,
-              const std::function<double()> &compute_mu);
+  void conclude(const sd_system &system, Scene &scene, double lambda, double solves,
+                const std::function<double()> &compute_mu);
   void compare(double of_velocity);
 };
 

@@ -95,7 +95,7 @@ void WholeClumps::arrange()
   });
   clumps.clear();
   tag.clear();
-  steps.assign(3 * members.size() + 3, 0);
+  edges.assign(3 * members.size() + 3, 0);
   for (size_t k = 0; k < members.size(); k++) {
     const int at = (int) k;
     if (clumps.empty() || clumps.back().molecule != members[k].molecule)
@@ -116,7 +116,7 @@ void WholeClumps::find()
     route(bound);
     arrange();
     epochs.members.advance();
-    found.take(epochs.lists);
+    found.set(epochs.lists);
   }
   stand();
   if (again || domain->box_change) check_widths();
@@ -132,7 +132,7 @@ void WholeClumps::stand()
   for (const Clump &clump : clumps)
     for (int k = clump.begin + 1; k < clump.end; k++)
       sd_bring_close(lattice.h, lattice.periodic, &x[3 * (size_t) clump.begin], &x[3 * (size_t) k],
-                     &steps[3 * (size_t) k]);
+                     &edges[3 * (size_t) k]);
 }
 
 /* How far a clump reaches in x, y, z: beyond half of a periodic box the image next to the first
@@ -161,7 +161,7 @@ double WholeClumps::memory_usage() const
 {
   return sizeof(double) *
       ((double) x.capacity() + outbox.capacity() + inbox.capacity()) +
-      sizeof(int) * ((double) away.capacity() + atom_of.capacity() + steps.capacity()) +
+      sizeof(int) * ((double) away.capacity() + atom_of.capacity() + edges.capacity()) +
       sizeof(int64_t) * (double) tag.capacity();
 }
 

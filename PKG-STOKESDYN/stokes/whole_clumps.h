@@ -4,7 +4,7 @@
  *
  * Members stand side by side: each is the image closest to the first of its clump, moved by whole
  * edges of the box. In a box that shears with the fluid such an image moves otherwise than its atom,
- * by the steps times the jump of the fluid velocity across an edge: Ambient::jumps. */
+ * by these edges times the jump of the fluid velocity across an edge: Ambient::jumps. */
 #ifndef SD_WHOLE_CLUMPS_H
 #define SD_WHOLE_CLUMPS_H
 
@@ -38,7 +38,7 @@ class WholeClumps : protected LAMMPS_NS::Pointers {
    * clump wider than half the periodic box. */
   void find();
   std::vector<double> x;
-  std::vector<int> steps;
+  std::vector<int> edges;
   double h[6] = {0.0};
 
   /* Rows of numbers from atoms to members: row(i, out) writes what goes of atom i, over zeros, to where
@@ -95,7 +95,7 @@ class WholeClumps : protected LAMMPS_NS::Pointers {
  private:
   const Voice voice;
   Epochs &epochs;
-  Since found;
+  Stamp found;
   Post post;
   /* atoms of this rank in clumps of its partners, one partner after the other */
   std::vector<int> away;

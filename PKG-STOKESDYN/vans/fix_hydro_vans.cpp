@@ -226,13 +226,13 @@ void FixHydroVans::post_force(int /*vflag*/)
 void FixHydroVans::push(int i, bool stepping, bool repeat)
 {
   if (!take[i]) {
-    if (out.has(i)) std::fill_n(out.give(i) + FORCE, 3, 0.0);
+    if (out.has(i)) std::fill_n(out.writable(i) + FORCE, 3, 0.0);
     if (!memo.has(i)) return;
     memo.row(i)[Columns::SOLVED] = 0.0;
     if (set.conserve) account(i)->force = 0.0;
     return;
   }
-  double *row = memo.give(i), *Fi = &F[3 * (size_t) i], drag = drag_x[i];
+  double *row = memo.writable(i), *Fi = &F[3 * (size_t) i], drag = drag_x[i];
   const double *left = row + Columns::LEFT;
   sd_vans_account *books = set.conserve ? account(i) : nullptr;
   if (books) {
@@ -248,7 +248,7 @@ void FixHydroVans::push(int i, bool stepping, bool repeat)
     if (stepping) sd_vans_account_step(books, drag, update->dt);
     books->force = drag;
   }
-  std::copy_n(Fi, 3, out.give(i) + FORCE);
+  std::copy_n(Fi, 3, out.writable(i) + FORCE);
   for (int d = 0; d < 3; d++) {
     atom->f[i][d] += Fi[d];
     local.force[d] += Fi[d];
@@ -274,7 +274,7 @@ void FixHydroVans::find_accelerations(bool stepping, bool repeat)
   acceleration.assign(3 * (size_t) atom->nlocal + 3, 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!take[i]) continue;
-    Motion *motion = (Motion *) (memo.give(i) + column.motion);
+    Motion *motion = (Motion *) (memo.writable(i) + column.motion);
     if (stepping && motion->span > 0.0)
       for (int d = 0; d < 3; d++)
         acceleration[3 * (size_t) i + d] =

@@ -67,7 +67,7 @@ class FixHydroVans : public RowsFix {
   struct Motion {
     double v[3], span;
   };
-  sd_vans_account *account(int i) { return (sd_vans_account *) (memo.give(i) + column.account); }
+  sd_vans_account *account(int i) { return (sd_vans_account *) (memo.writable(i) + column.account); }
 
   /* The same on all ranks and in the restart file; last_step: of the forces in array_atom; elapsed:
    * since the last coupling; eddies: the random walk of all grains at once. */

@@ -127,7 +127,7 @@ void FixHydroVans::count_overlaps()
   }
   for (int i = 0; i < atom->nlocal; i++) {
     const auto at = share.find(atom->tag[i]);
-    if (at != share.end()) memo.give(i)[column.lost] = 1.0 - at->second;
+    if (at != share.end()) memo.writable(i)[column.lost] = 1.0 - at->second;
   }
 }
 
@@ -310,9 +310,9 @@ template <class Renew> void FixHydroVans::fluctuate(const Renew &renew)
   select(groupbit);
   for (int i = 0; i < atom->nlocal; i++)
     if (take[i])
-      renew(i, memo.give(i) + column.eddy, out.give(i) + FLUCTUATION);
+      renew(i, memo.writable(i) + column.eddy, out.writable(i) + FLUCTUATION);
     else if (out.has(i))
-      std::fill_n(out.give(i) + FLUCTUATION, 3, 0.0);
+      std::fill_n(out.writable(i) + FLUCTUATION, 3, 0.0);
 }
 
 void FixHydroVans::renew_eddies(double time, bool first)

@@ -43,7 +43,7 @@ static long largest_body(const sd_bodies *A)
 
 long sd_bodies_work(const sd_bodies *A)
 {
-  return 6 * sd_bodies_rows(A) + 8 * 6 * (long) sd_bodies_count(A) + 12 * (long) A->spheres.n +
+  return 6 * sd_bodies_unknowns(A) + 8 * 6 * (long) sd_bodies_count(A) + 12 * (long) A->spheres.n +
       2 * largest_body(A) + 1;
 }
 
@@ -55,7 +55,7 @@ static long motions(const loop *c)
 /* V behind the forces of a vector of the loop */
 static double *motion_of(const loop *c, double *vector)
 {
-  return vector + sd_bodies_rows(c->A);
+  return vector + sd_bodies_unknowns(c->A);
 }
 
 /* --- the preconditioner --- */
@@ -84,7 +84,7 @@ static sd_status pre(loop *c, const double *r, const double *f, int moved, doubl
   sd_bodies_alone(A, r, load, c->alone, l, V);
   for (int b = 0; b < sd_bodies_count(A); b++)
     if (sd_tie_binds(A, b)) memcpy(V + 6 * (long) b, tied + 6 * (long) b, 6 * sizeof(double));
-  for (long j = 0; sd_tie_has_springs(A) && j < sd_bodies_rows(A); j++) l[j] += c->rows[j];
+  for (long j = 0; sd_tie_has_springs(A) && j < sd_bodies_unknowns(A); j++) l[j] += c->rows[j];
   return SD_OK;
 }
 
@@ -101,7 +101,7 @@ static sd_status bodies_precondition(void *ctx, const double *r, double *z)
 static sd_status bodies_apply(void *ctx, const double *p, double *w)
 {
   loop *c = ctx;
-  const double *V = p + sd_bodies_rows(c->A);
+  const double *V = p + sd_bodies_unknowns(c->A);
   const sd_status status =
       sd_bodies_product(c->A, c->shells, p, V, c->bodies, c->on_spheres, c->rows, w);
   if (status == SD_OK) c->report->products++;
@@ -113,7 +113,7 @@ static double bodies_square(void *ctx, const double *p)
 {
   const sd_bodies *A = ((loop *) ctx)->A;
   double sum = 0.0;
-  for (long j = 0; j < sd_bodies_rows(A); j++) sum += p[j] * p[j] / A->D[j];
+  for (long j = 0; j < sd_bodies_unknowns(A); j++) sum += p[j] * p[j] / A->D[j];
   return sum;
 }
 
@@ -168,7 +168,7 @@ static void bodies_measure(void *ctx, const sd_cg_vectors *v, double own[SD_CG_O
   const sd_bodies *A = c->A;
   const double *V = motion_of(c, v->x);
   sd_bodies_move(A, V, c->on_spheres, c->rows);
-  for (long j = 0; j < sd_bodies_rows(A); j++) {
+  for (long j = 0; j < sd_bodies_unknowns(A); j++) {
     own[NOISE] += A->D[j] * v->r[j] * v->r[j];
     own[FORCES] += v->x[j] * (c->rows[j] - c->problem->u[j]);
   }
@@ -227,11 +227,11 @@ static sd_status start_alone(loop *c)
 {
   const sd_bodies *A = c->A;
   double s[3] = {0.0}, *V = motion_of(c, c->v.x), *still = motion_of(c, c->v.z);
-  for (long j = 0; j < sd_bodies_rows(A); j++) c->v.r[j] = -c->problem->u[j];
+  for (long j = 0; j < sd_bodies_unknowns(A); j++) c->v.r[j] = -c->problem->u[j];
   hold(c, V);
   sd_bodies_alone(A, c->v.r, c->f, c->alone, c->v.x, V);
   sd_bodies_move(A, V, c->on_spheres, c->rows);
-  for (long j = 0; j < sd_bodies_rows(A); j++) {
+  for (long j = 0; j < sd_bodies_unknowns(A); j++) {
     const double u = c->problem->u[j], v = c->rows[j];
     s[0] += c->v.x[j] * (v - u);
     s[1] += A->D[j] * (u * u + v * v);
@@ -251,7 +251,7 @@ static sd_status expect(loop *c)
   const sd_bodies *A = c->A;
   double s[2] = {0.0, 0.0};
   if (!A->tie) return SD_OK;
-  for (long j = 0; j < sd_bodies_rows(A); j++) s[0] += A->D[j] * c->v.r[j] * c->v.r[j];
+  for (long j = 0; j < sd_bodies_unknowns(A); j++) s[0] += A->D[j] * c->v.r[j] * c->v.r[j];
   s[1] = spent_by_loads(c, motion_of(c, c->v.x));
   const sd_status status = sd_world_sum(&A->world, s, 2);
   c->power.spent = fmax(c->power.alone, s[1] - c->power.carried);
@@ -264,7 +264,7 @@ static sd_status find_residual(loop *c)
 {
   const sd_status status = bodies_apply(c, c->v.x, c->v.w);
   if (status != SD_OK) return status;
-  for (long j = 0; j < sd_bodies_rows(c->A); j++) c->v.r[j] = -c->problem->u[j] - c->v.w[j];
+  for (long j = 0; j < sd_bodies_unknowns(c->A); j++) c->v.r[j] = -c->problem->u[j] - c->v.w[j];
   return expect(c);
 }
 
@@ -303,7 +303,7 @@ static void guess_motion(const loop *c, const double *v_with_l, double *V)
 static sd_status repair(loop *c, double *guess)
 {
   const sd_bodies *A = c->A;
-  const long rows = sd_bodies_rows(A);
+  const long rows = sd_bodies_unknowns(A);
   double *V = motion_of(c, guess), *dV = motion_of(c, c->v.z), *lacks = motion_of(c, c->v.x);
   sd_bodies_collect(A, guess, c->on_spheres, lacks);
   if (A->tie) {
@@ -329,11 +329,11 @@ static sd_status start_warm(loop *c, const double *v_with_l)
 {
   const sd_bodies *A = c->A;
   double *guess = c->v.p;
-  memcpy(guess, c->v.x, sizeof(double) * (size_t) sd_bodies_rows(A));
+  memcpy(guess, c->v.x, sizeof(double) * (size_t) sd_bodies_unknowns(A));
   if (A->tie) guess_motion(c, v_with_l, motion_of(c, guess));
   sd_status status = repair(c, guess);
   if (status == SD_OK) status = start_alone(c);
-  memcpy(c->v.x, guess, sizeof(double) * (size_t) (sd_bodies_rows(A) + (A->tie ? motions(c) : 0)));
+  memcpy(c->v.x, guess, sizeof(double) * (size_t) (sd_bodies_unknowns(A) + (A->tie ? motions(c) : 0)));
   return status == SD_OK ? find_residual(c) : status;
 }
 
@@ -349,14 +349,14 @@ static sd_status settle(loop *c)
 {
   take_motion(c);
   sd_bodies_move(c->A, motion_of(c, c->v.z), c->on_spheres, c->rows);
-  for (long j = 0; j < sd_bodies_rows(c->A); j++) c->v.r[j] += c->rows[j];
+  for (long j = 0; j < sd_bodies_unknowns(c->A); j++) c->v.r[j] += c->rows[j];
   return SD_OK;
 }
 
 static sd_status bodies_iterate(loop *c)
 {
-  const sd_cg cg = {.size = sd_bodies_rows(c->A) + motions(c),
-                    .paired = sd_bodies_rows(c->A),
+  const sd_cg cg = {.size = sd_bodies_unknowns(c->A) + motions(c),
+                    .paired = sd_bodies_unknowns(c->A),
                     .ctx = c,
                     .apply = bodies_apply,
                     .precondition = bodies_precondition,
@@ -400,7 +400,7 @@ static void take_loads(loop *c)
 static sd_status finish(loop *c, const sd_bodies_answer *answer)
 {
   const sd_bodies *A = c->A;
-  const long rows = sd_bodies_rows(A), loads = sd_bodies_loads(A);
+  const long rows = sd_bodies_unknowns(A), loads = sd_bodies_loads(A);
   double *V = motion_of(c, c->v.x);
   memcpy(answer->l, c->v.x, sizeof(double) * (size_t) rows);
   if (A->tie) sd_rigid_move(&A->spheres, V, answer->v_with_l);
@@ -425,7 +425,7 @@ static sd_status finish(loop *c, const sd_bodies_answer *answer)
 sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
                           const sd_bodies_answer *answer, double *work, sd_bodies_report *report)
 {
-  const long rows = sd_bodies_rows(A), bodies = 6 * (long) sd_bodies_count(A), size = rows + bodies;
+  const long rows = sd_bodies_unknowns(A), bodies = 6 * (long) sd_bodies_count(A), size = rows + bodies;
   double *r = work + 3 * size, *by_bodies = r + 3 * rows, *on_spheres = by_bodies + 5 * bodies;
   loop c = {
       .A = A,

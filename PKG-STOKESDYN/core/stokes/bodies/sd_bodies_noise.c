@@ -71,7 +71,7 @@ static void noise_take_block(const sd_body *b, double scale, const double *B, do
 /* P = S C^-1 sqrt(eta a), S: torques times the length, so P^T = C^-1 S and P^-T = S^-1 C */
 static void noise_multiply(const draw *d, half_of which, const double *v, double *out)
 {
-  if (out != v) memcpy(out, v, sizeof(double) * (size_t) sd_bodies_rows(d->A));
+  if (out != v) memcpy(out, v, sizeof(double) * (size_t) sd_bodies_unknowns(d->A));
   for (int b = 0; b < d->A->shaped; b++) {
     const sd_body *body = d->blocks->body + b;
     const sd_body_root *root = noise_root_of(d->blocks, b);
@@ -85,7 +85,7 @@ static void noise_multiply(const draw *d, half_of which, const double *v, double
     if (which == HALF) stretch(body, root->length, out);
     if (which == HALF_INVERSE) stretch(body, 1.0 / root->length, out);
   }
-  for (long j = 0; j < sd_bodies_rows(d->A); j++)
+  for (long j = 0; j < sd_bodies_unknowns(d->A); j++)
     out[j] = d->diagonal[j] > 0.0
         ? (which == HALF_INVERSE ? out[j] / d->diagonal[j] : out[j] * d->diagonal[j])
         : 0.0;
@@ -113,7 +113,7 @@ static void fill_diagonal(const draw *d)
 {
   const sd_bodies *A = d->A;
   const int w = A->points.width;
-  memset(d->diagonal, 0, sizeof(double) * (size_t) sd_bodies_rows(A));
+  memset(d->diagonal, 0, sizeof(double) * (size_t) sd_bodies_unknowns(A));
   for (int e = 0; e < A->lone; e++)
     for (long j = (long) w * A->loner[e]; j < (long) w * (A->loner[e] + 1); j++)
       d->diagonal[j] = sqrt(A->D[j]);
@@ -137,7 +137,7 @@ static long largest_block(const sd_bodies *A, const sd_bodies_blocks *blocks)
 sd_status sd_bodies_draw(sd_bodies_noise *s, const sd_bodies *A, const sd_bodies_blocks *blocks,
                          const double *w, double tolerance, double *y, sd_noise_report *report)
 {
-  const long rows = sd_bodies_rows(A), motions = 6 * (long) sd_bodies_count(A);
+  const long rows = sd_bodies_unknowns(A), motions = 6 * (long) sd_bodies_count(A);
   const long all = 2 * rows + 3 * motions + 6 * (long) A->spheres.n + largest_block(A, blocks) + 1;
   if (!sd_reserve(&s->work, sizeof(double), (size_t) all, &s->room)) return SD_ENOMEMORY;
   double *diagonal = s->work, *bodies = diagonal + rows, *on_spheres = bodies + 3 * motions;

@@ -232,7 +232,7 @@ sd_status sd_bodies_product(const sd_bodies *A, int shells, const double *l, con
     V = less;
   }
   sd_bodies_move(A, V, on_spheres, rows);
-  for (long j = 0; j < sd_bodies_rows(A); j++) w[j] += l[j] / A->D[j] - rows[j];
+  for (long j = 0; j < sd_bodies_unknowns(A); j++) w[j] += l[j] / A->D[j] - rows[j];
   return SD_OK;
 }
 
@@ -251,5 +251,5 @@ void sd_bodies_carry(const sd_bodies *A, const double *gradient, double *work, d
     to_space(body->R, 6, 1.0 / body->a, moves, V + 6 * (long) (A->lone + b));
   }
   sd_bodies_move(A, V, on_spheres, rows);
-  for (long j = 0; j < sd_bodies_rows(A); j++) u[j] += rows[j];
+  for (long j = 0; j < sd_bodies_unknowns(A); j++) u[j] += rows[j];
 }

@@ -83,8 +83,8 @@ static inline sd_rigid sd_bodies_films(const sd_bodies *A)
   if (A->film_arm) K.arm = A->film_arm;
   return K;
 }
-/* Numbers of rows, of spheres */
-static inline long sd_bodies_rows(const sd_bodies *A)
+/* How many numbers l has, and those of spheres have */
+static inline long sd_bodies_unknowns(const sd_bodies *A)
 {
   return (long) A->points.width * A->points.n;
 }

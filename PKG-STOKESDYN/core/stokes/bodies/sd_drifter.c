@@ -49,7 +49,7 @@ void sd_drifter_follow(const sd_bodies *A, const sd_drifter *d, const double *y,
 void sd_drifter_spread(const sd_bodies *A, const sd_drifter *d, const double *v, double *l)
 {
   const int w = A->points.width;
-  memset(l, 0, sizeof(double) * (size_t) sd_bodies_rows(A));
+  memset(l, 0, sizeof(double) * (size_t) sd_bodies_unknowns(A));
   for (int e = 0; e < A->lone; e++)
     memcpy(l + (long) w * A->loner[e], v + 6 * (long) e, sizeof(double) * (size_t) w);
   for (int b = 0; b < A->shaped; b++) {
@@ -137,7 +137,7 @@ sd_status sd_drifter_move(const sd_bodies *A, const sd_drifter *d, const sd_drif
 sd_status sd_drifter_difference(const sd_bodies *A, const double *l, double part, double *work, double *slip,
                                 double *load)
 {
-  const long motions = 6 * (long) sd_bodies_count(A), n = sd_bodies_rows(A);
+  const long motions = 6 * (long) sd_bodies_count(A), n = sd_bodies_unknowns(A);
   double *still = work, *bodies = still + motions, *on_spheres = bodies + 2 * motions;
   double *rows = on_spheres + 6 * (long) A->spheres.n, *u = rows + n;
   memset(still, 0, sizeof(double) * (size_t) motions);

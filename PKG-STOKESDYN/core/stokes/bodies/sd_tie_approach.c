@@ -135,7 +135,7 @@ sd_status sd_tie_approach_share(const sd_bodies *A, const double *r, const doubl
   for (long i = 0; i < n; i++) memcpy(on_spheres + 6 * i, pushed + width * i, 3 * sizeof(double));
   sd_rigid_collect(&A->spheres, on_spheres, sd_bodies_count(A), f);
   if (!A->faces) return SD_OK;
-  memset(share, 0, sizeof(double) * (size_t) sd_bodies_rows(A));
+  memset(share, 0, sizeof(double) * (size_t) sd_bodies_unknowns(A));
   sd_faces_push(A->faces, n, pushed, share);
   return SD_OK;
 }

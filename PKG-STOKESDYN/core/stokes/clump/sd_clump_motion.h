@@ -54,9 +54,9 @@ static inline void sd_clump_add_load(const double arm[3], const double FT[6], do
  * u the flow at its centroid (sd_clump_flow) and E the strain there, N its mobility, C its force from
  * the strain for eta = 1. v [6n]: velocity and angular velocity of its spheres; F, T [3n] (NULL: not
  * wanted): force and torque of the fluid on them. No allocation. */
-void sd_clump_settle(const sd_shape *shape, const sd_clump *clump, const sd_clump_motion *m,
-                     const double pose[12], double eta, const double load[6], int held, double V[6],
-                     double *v, double *F, double *T);
+void sd_clump_move_alone(const sd_shape *shape, const sd_clump *clump, const sd_clump_motion *m,
+                         const double pose[12], double eta, const double load[6], int held, double V[6],
+                         double *v, double *F, double *T);
 
 SD_END_C
 #endif

@@ -183,7 +183,7 @@ static void the_fluid_balances_what_acts_on_a_clump(void **state)
     }
     sd_minus(s.x, s.c, arm);
     sd_clump_add_load(arm, about_first, load);
-    sd_clump_settle(&s.shape, &clump, &s.motion, pose, 1.7, load, 0, V, v, F, T);
+    sd_clump_move_alone(&s.shape, &clump, &s.motion, pose, 1.7, load, 0, V, v, F, T);
     for (int k = 0; k < s.n; k++) {
       double left[3], couple[3], turning[3];
       sd_minus(s.x + 3 * k, s.c, arm);
@@ -199,7 +199,7 @@ static void the_fluid_balances_what_acts_on_a_clump(void **state)
     }
     for (int d = 0; d < 6; d++) CHECK_NEAR(sum[d], 0.0, 1e-9);
     memcpy(V, told, sizeof(V));
-    sd_clump_settle(&s.shape, &clump, &s.motion, pose, 1.7, load, 1, V, v, F, T);
+    sd_clump_move_alone(&s.shape, &clump, &s.motion, pose, 1.7, load, 1, V, v, F, T);
     for (int d = 0; d < 6; d++) CHECK_NEAR(V[d], told[d], 0.0);
     sd_clump_free(&clump);
     sd_shape_free(&s.shape);

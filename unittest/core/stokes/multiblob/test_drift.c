@@ -77,7 +77,7 @@ static void solve_at(const place_of *points, const place_of *films, const double
     p.A.tie = &p.f->tie;
     p.A.film_arm = l.f->arm;
   }
-  if (u) memcpy(p.f->u, u, sizeof(double) * (size_t) sd_bodies_rows(&p.A));
+  if (u) memcpy(p.f->u, u, sizeof(double) * (size_t) sd_bodies_unknowns(&p.A));
   const int loads_of_all = 6 * p.A.spheres.n;
   for (int j = 0; j < loads_of_all; j++) F[j] = loads[j] + random[j];
   assert_int_equal(move(p.f, &p.A, F, 0, 1e-10), SD_OK);
@@ -128,8 +128,8 @@ static void add_mean(const place_of *s, const sd_bodies *A, const sd_drifter *d,
                      double *mean)
 {
   const int size = 6 * s->n;
-  double of_points[24], of_films[24], answer[ANSWER], largest = 0.0, *u = calloc((size_t) sd_bodies_rows(A), sizeof(double));
-  double *work = malloc(sizeof(double) * (size_t) (24 * s->n + 12 * A->spheres.n + sd_bodies_rows(A)));
+  double of_points[24], of_films[24], answer[ANSWER], largest = 0.0, *u = calloc((size_t) sd_bodies_unknowns(A), sizeof(double));
+  double *work = malloc(sizeof(double) * (size_t) (24 * s->n + 12 * A->spheres.n + sd_bodies_unknowns(A)));
   const sd_drifter_push push = {u, y ? y : u, NULL, f, NULL, 1e-9};
   assert_int_equal(sd_drifter_move(A, d, &push, work, of_points, of_films), SD_OK);
   for (int j = 0; j < size; j++) largest = fmax(largest, fmax(fabs(of_points[j]), fabs(of_films[j])));
@@ -175,7 +175,7 @@ static double error_of_drift(const place_of *s, int by_differences)
   exact_divergence(s, div);
   scene_at at = build(s, s->films);
   const sd_body_shape *shape = s->m ? &at.f->shape.points : &at.f->lone.points;
-  const int rows = (int) sd_bodies_rows(&at.A), n = at.A.spheres.n;
+  const int rows = (int) sd_bodies_unknowns(&at.A), n = at.A.spheres.n;
   sd_body_follow follow;
   if (s->m) {
     assert_int_equal(sd_body_follow_create(shape, !by_differences, &follow), SD_OK);

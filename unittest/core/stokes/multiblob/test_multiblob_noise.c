@@ -62,7 +62,7 @@ static void add_square(int size, const double *V, double *C)
  * films */
 static double worst_of(blob_flock *f, const sd_bodies *A, const block_roots *r, double tolerance)
 {
-  const int size = 6 * A->shaped, rows = (int) sd_bodies_rows(A), n = A->spheres.n;
+  const int size = 6 * A->shaped, rows = (int) sd_bodies_unknowns(A), n = A->spheres.n;
   double *N = mobility_of(f, A), *C = calloc((size_t) (size * size), sizeof(double)), worst = 0.0;
   double *w = calloc((size_t) rows, sizeof(double)), F[6 * MOST] = {0.0};
   const sd_bodies_blocks blocks = {A->body, r->of};
@@ -153,7 +153,7 @@ static void every_mode_is_right_at_the_default_tolerance(void **state)
   blob_flock *f = dense(&A);
   block_roots *r = roots_of(f, &A, NULL);
   const sd_bodies_blocks blocks = {A.body, r->of};
-  const int size = 6 * A.shaped, rows = (int) sd_bodies_rows(&A);
+  const int size = 6 * A.shaped, rows = (int) sd_bodies_unknowns(&A);
   double *R = mobility_of(f, &A), *sum = calloc((size_t) size, sizeof(double));
   double *w = malloc(sizeof(double) * (size_t) rows), F[6 * MOST] = {0.0}, V[2][6 * MOST], worst = 0.0;
   sd_bodies_noise noise = {0};

@@ -55,7 +55,7 @@ static int has(const split_scene *s, int row)
 /* M [rows rows] by unit vectors */
 static void matrix_of(const split_scene *s, const sd_bodies *A, double *M)
 {
-  const int rows = (int) sd_bodies_rows(A);
+  const int rows = (int) sd_bodies_unknowns(A);
   double *e = calloc((size_t) rows, sizeof(double));
   for (int j = 0; j < rows; j++) {
     e[j] = has(s, j);
@@ -92,7 +92,7 @@ static void unit_load(const blob_flock *f, int j, double *F)
  * has these as rows */
 static void mobility_of(split_scene *s, double *N, double *G)
 {
-  const int size = 6 * s->whole.shaped, rows = (int) sd_bodies_rows(&s->whole);
+  const int size = 6 * s->whole.shaped, rows = (int) sd_bodies_unknowns(&s->whole);
   for (int j = 0; j < size; j++) {
     double F[6 * MOST] = {0.0};
     unit_load(s->f, j, F);
@@ -157,7 +157,7 @@ static void add_films(const split_scene *s, int size, double *B)
 /* V = G y + N f, for one y and one f */
 static void check_solve(split_scene *s, const double *N, const double *G)
 {
-  const int size = 6 * s->whole.shaped, rows = (int) sd_bodies_rows(&s->whole);
+  const int size = 6 * s->whole.shaped, rows = (int) sd_bodies_unknowns(&s->whole);
   double F[6 * MOST] = {0.0}, on_bodies[6 * MOST];
   for (int j = 0; j < rows; j++) s->f->u[j] = has(s, j) * (j * 7 % 11 - 5.0);
   for (int k = 0; k < 6 * s->whole.spheres.n; k++) F[k] = k * 5 % 13 - 6.0;
@@ -179,7 +179,7 @@ static void check_solve(split_scene *s, const double *N, const double *G)
  * y of covariance C + that of the waves' product, so that theirs is G (C + waves) G^T + N (films) N = N. */
 static void check_covariance(split_scene *s)
 {
-  const int size = 6 * s->whole.shaped, rows = (int) sd_bodies_rows(&s->whole);
+  const int size = 6 * s->whole.shaped, rows = (int) sd_bodies_unknowns(&s->whole);
   const size_t square = (size_t) rows * (size_t) rows, small = (size_t) size * (size_t) size;
   double *M = malloc(sizeof(double) * 3 * square), *C = M + square, *whole = C + square;
   double *N = calloc(3 * small, sizeof(double)), *cov = N + small, *films = cov + small;
@@ -301,7 +301,7 @@ static void every_mode_is_right_at_the_default_tolerance(void **state)
   split_scene s;
   blob_flock *f = spheres(CHECK_SIZE(32, 8), 1.0, 0.3, &side);
   split_in_cube(&s, f, side, 1e-4);
-  const int size = 6 * s.whole.shaped, rows = (int) sd_bodies_rows(&s.whole);
+  const int size = 6 * s.whole.shaped, rows = (int) sd_bodies_unknowns(&s.whole);
   double *R = malloc(sizeof(double) * (size_t) (size * size)), *G = malloc(sizeof(double) * (size_t) (size * rows));
   double *w = malloc(sizeof(double) * 2 * (size_t) rows), *waves = w + rows;
   const sd_bodies_blocks blocks = {s.near.body, s.of};

@@ -1,4 +1,5 @@
-#include "neighbours_scaled.h"
+/* Of neighbours_stokes: pair_style hybrid/scaled, which tells its factors to restart files only. */
+#include "neighbours_stokes.h"
 
 #include "lammps_compat.h"
 
