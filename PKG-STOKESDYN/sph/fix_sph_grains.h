@@ -60,8 +60,11 @@ class FixSphGrains : public SphFix {
   AtomArray rows, shown;
   double filled = 0.0;
   EndOfRun end;
-  /* no velocity of grains has changed since the last run */
-  bool same_velocities = false;
+  /* by which law and time step the last run found its forces */
+  std::vector<double> law_of_end;
+  std::vector<double> law_of_now() const;
+  /* neither the grains nor this law have changed since the last run */
+  bool same_forces = false;
   bool resumes() const;
 
   // a step

@@ -153,30 +153,41 @@ void FixSphGrains::divide_rates(const double *order, int columns, bool shifts, d
 
 // --- a run that goes on ---------------------------------------------------------------------------
 
+/* All that the force on a grain depends on beside the state of grains and water. */
+std::vector<double> FixSphGrains::law_of_now() const
+{
+  return {(double) law.drag.law, (double) law.drag.hindrance, law.drag.fall, law.exponent, law.eta,
+          law.h, (double) law.kernel, (double) own_flow, (double) pair->has_laplacian(), update->dt};
+}
+
 void FixSphGrains::setup_pre_exchange()
 {
-  same_velocities = end.still_stands(groupbit);
+  same_forces = law_of_now() == law_of_end && end.still_stands(groupbit);
 }
 
 /* Then phi and the forces of its last step stand, which had velocities at half step. */
 bool FixSphGrains::resumes() const
 {
-  return same_velocities && pair->resumes();
+  return same_forces && pair->resumes();
 }
 
 void FixSphGrains::post_run()
 {
   end.record(groupbit);
+  law_of_end = law_of_now();
 }
 
 void FixSphGrains::write_state(NamedState &state)
 {
   end.write(groupbit, state);
+  if (update->whichflag == 1) law_of_end = law_of_now();
+  state.put("law", law_of_end);
 }
 
 void FixSphGrains::read_state(const NamedState &state)
 {
   end.read(state);
+  law_of_end = state.get("law");
 }
 
 // --- a step --------------------------------------------------------------------------------------

@@ -328,6 +328,23 @@ def test_a_run_after_a_change_finds_the_drag_anew(change):
     assert np.abs(found[0] - found[1]).max() < 1e-3 * np.abs(found[0]).max()
 
 
+@pytest.mark.parametrize("words", ["drag ergun", "viscosity 3", "own_flow no", "hindrance 2"])
+def test_another_law_after_a_restart_acts_in_the_first_force(words, tmp_path):
+    """As that of a fix with another ID does, which has nothing of the file."""
+    lmp = start()
+    run(lmp, scene(**CLOSED) + STIR + f"run 5\nwrite_restart {tmp_path}/half")
+    old = forces_on_grains(lmp)[:, 1:]
+    lmp.close()
+    found = []
+    for name in ("g", "again"):
+        lmp = start()
+        run(lmp, f"atom_modify map array sort 0 0\nread_restart {tmp_path}/half\n" + AGAIN.replace("fix g grains sph/grains", f"fix {name} grains sph/grains displace no {words}") + "run 0")
+        found.append(by_id(lmp, "f", 3)[-60:])
+        lmp.close()
+    assert np.abs(found[0] - found[1]).max() < 1e-3 * np.abs(found[0]).max()
+    assert np.abs(found[0] - old).max() > 0.05 * np.abs(old).max()
+
+
 def test_drag_that_is_stiff_does_not_overshoot():
     """Grains whose own time is a thousandth of the step go with the water at once, and all momentum is kept."""
     lmp = start()
