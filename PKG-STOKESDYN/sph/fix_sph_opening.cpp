@@ -377,11 +377,12 @@ bool FixSphInlet::is_here(double *place) const
   return here;
 }
 
-void FixSphInlet::create(const Newcomer &like, tagint tag)
+/* On the rank that has its place, which returns 1 */
+int FixSphInlet::create(const Newcomer &like, tagint tag)
 {
   double place[3];
   std::copy_n(like.place, 3, place);
-  if (!is_here(place)) return;
+  if (!is_here(place)) return 0;
   atom->avec->create_atom(like.type, place);
   const int i = atom->nlocal - 1;
   atom->tag[i] = tag;
@@ -392,8 +393,10 @@ void FixSphInlet::create(const Newcomer &like, tagint tag)
   if (atom->rmass) atom->rmass[i] = like.mass;
   if (atom->radius) atom->radius[i] = like.radius;
   marks.writable(i)[STATE] = IN_LAYER;
+  return 1;
 }
 
+/* LAMMPS may be told to go on without atoms that it has lost: natoms has them still. */
 void FixSphInlet::pre_exchange()
 {
   const std::vector<Newcomer> all = newcomers();
@@ -410,12 +413,12 @@ void FixSphInlet::pre_exchange()
   // new particles stand where ghosts were
   if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
   atom->nghost = 0;
-  for (const Newcomer &next : all) create(next, ++last);
-  const bigint before = atom->natoms;
-  atom->natoms = sum_of_all(world, (bigint) atom->nlocal);
-  if (atom->natoms != before + (bigint) all.size())
+  int made = 0;
+  for (const Newcomer &next : all) made += create(next, ++last);
+  if (sum_of_all(world, made) != (int) all.size())
     voice.at_step().fail("a new particle would stand outside of the box: where the flow turns back, "
                          "the box must be longer than the layer");
+  atom->natoms += (bigint) all.size();
   if (atom->map_style != Atom::MAP_NONE) {
     atom->map_init();
     atom->map_set();

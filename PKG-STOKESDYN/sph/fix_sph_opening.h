@@ -112,7 +112,7 @@ class FixSphInlet : public FixSphOpening {
   void move_layer();
   std::vector<Newcomer> newcomers();
   bool is_here(double *place) const;
-  void create(const Newcomer &like, LAMMPS_NS::tagint tag);
+  int create(const Newcomer &like, LAMMPS_NS::tagint tag);
 };
 
 /* Particles of its layer move across the plane as the fluid before them does, and have a given pressure.

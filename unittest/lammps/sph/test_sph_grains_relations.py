@@ -97,3 +97,14 @@ def test_grains_pass_open_ends_with_the_water():
     assert np.abs(v - [1, 0, 0]).max() < 1e-9 and (x[kind == 2] > 17).all()
     flow = (kind == 1) & (x > 7) & (x < 17)
     assert flow.sum() == 250 and abs(m[flow].sum() - 250) < 1e-3
+
+
+def test_the_discharge_of_an_inlet_is_that_of_the_water_between_the_grains():
+    """A bed at rest, phi 0.4, that reaches into the layer: Q of water alone, so that it flows with Q/(A (1 - phi)); 5 % for the end of the layer, where
+    grains stand at the surface of the water."""
+    lmp = start()
+    bed = "lattice sc 1 origin 0.5 0.5 0.5\nregion bed block 0 12 0 5 0 5 units box\ncreate_atoms 2 region bed"
+    run(lmp, scene((12, 5, 5), 0.5, 10, 0.05, "", bed, (6 / np.pi * 0.4) ** (1 / 3), "f p p", mover="") + "fix in water sph/inlet xlo 7 7 flow_rate 2.5\nrun 2")
+    x, v, kind = by_id(lmp, "x", 3)[:, 0], by_id(lmp, "v", 3)[:, 0], by_id(lmp, "type")
+    lmp.close()
+    assert v[(kind == 1) & (x < 7)] == pytest.approx(0.1 / 0.6, rel=0.05)

@@ -247,6 +247,19 @@ def test_flow_that_turns_back_is_stopped_and_said_once(tmp_path):
     assert (done.stdout + done.stderr).count("the flow turns back at this outlet, which has no fluid to give and holds it there") == 1
 
 
+def test_an_inlet_goes_on_without_particles_that_lammps_has_lost():
+    """A drop flies out of a box with boundary f, which `thermo_modify lost ignore` allows: the jet below it goes on as without the drop."""
+    jet = PIPE.replace("boundary f p p", "boundary f f p").replace("1.7 0 0.6", "1.7 -0.1 0.9").replace("lost error", "lost ignore").replace(
+        "create_atoms 1 box", "region jet block -0.7 1.7 0 0.6 -0.05 0.05 units box\ncreate_atoms 1 region jet")
+    counts = []
+    for drop in ("", "create_atoms 1 single 0.5 0.75 0 units box\nset atom 145 sph/rho 1 vy 2\n"):
+        lmp = start()
+        run(lmp, jet + drop + OPEN.format(1) + "run 200")
+        counts.append((len(by_id(lmp, "id")), lmp.get_natoms(), lmp.extract_fix("in", 0, 0)))
+        lmp.close()
+    assert counts[1] == counts[0] and counts[0][0] == counts[0][1] == 144
+
+
 def test_new_particles_have_the_size_of_those_that_they_replace():
     lmp = start()
     run(lmp, PIPE.replace("atom_style sph", "atom_style hybrid sph sphere").replace("mass 1 0.01", "set type 1 diameter 0.08\nset type 1 mass 0.01")
