@@ -36,8 +36,10 @@ double sd_sph_least_pressure(const sd_sph_state *state);
 
 /* Without tension: densities [n] of the particles i with mask[i] & bit are SD_SPH_THINNEST rho0 at
  * least. Nothing pulls on a particle that has come off, and the rate of its density, which counts all
- * that goes away from it as room for itself, would make it thinner and larger without an end. */
-static const double SD_SPH_THINNEST = 0.95;
+ * that goes away from it as room for itself, would make it thinner and larger without an end. But spray
+ * must become as thin as it is before it comes together: what it lacks of that it takes for compression,
+ * and pushes before it is one fluid again. */
+static const double SD_SPH_THINNEST = 0.3;
 void sd_sph_keep_size(const sd_sph_state *state, int n, double *rho, const int *mask, int bit);
 
 /* P [n] of the particles i with mask[i] & bit; the others keep theirs. */

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from host import at_most
-from sph_tools import mpirun, read_dump, run, start
+from sph_tools import by_id, mpirun, read_dump, run, start
 from test_sph_input import message
 
 BEGIN = """
@@ -366,9 +366,46 @@ def test_water_without_tension_comes_apart(tension):
     kinetic = (v ** 2).sum() / 72
     if tension == "no":
         assert kinetic == pytest.approx(1, abs=1e-4)
-        assert 0.95 - 1e-12 <= lmp.extract_compute("least", 0, 0) < 0.96
+        assert 0.3 <= lmp.extract_compute("least", 0, 0) < 0.9    # what comes off has room
     else:
         assert kinetic < 0.95
+    lmp.close()
+
+
+def test_spray_that_comes_together_has_the_volume_that_it_had():
+    """A disk bursts in a harmonic trap, twice as wide as it was: particles swing, x cos(wt) + x 2 sin(wt), and nothing pushes until they are back where
+    they were. Density that had a limit near rho0 pushed as soon as they came nearer, and splashed water stood twice as high as it should."""
+    lmp = start()
+    run(lmp, BEGIN + """
+boundary f f p
+lattice sq 1
+region all block -20 20 -20 20 -0.5 0.5 units box
+create_box 1 all
+region disk sphere 0 0 0 5.6 units box
+create_atoms 1 region disk
+mass 1 1
+set group all sph/rho 1
+variable u atom 0.2*x
+variable v atom 0.2*y
+velocity all set v_u v_v 0 units box
+neighbor 0.3 bin
+neigh_modify delay 0 every 1
+pair_style sph/artVisc/tensCorr wendland 1.5 viscosity 1e-5 central shift yes
+pair_coeff * * c 7.5
+fix eos all sph/pressure Tait $(7.5^2/7) 1 7 tension no
+fix density all sph/density/continuity delta 0.1
+fix move all nve/sph
+variable pullx atom -0.01*x
+variable pully atom -0.01*y
+fix trap all addforce v_pullx v_pully 0
+timestep $(10*2.214297435588181/400)
+""")
+    x = by_id(lmp, "x", 3)
+    run(lmp, "run 200 post no")
+    assert np.abs(by_id(lmp, "x", 3)).max() > 2 * np.abs(x).max()
+    run(lmp, "run 200 post no")
+    back = by_id(lmp, "x", 3)
+    assert (back * x).sum() / (x * x).sum() == pytest.approx(1, abs=0.02)
     lmp.close()
 
 
