@@ -223,6 +223,7 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair> {
   void check_turning(const double w2_shear2[2]);
   void look_at_sound();
   void look_at_widths();
+  void look_at_plane();
   void look_at_fluids();
   void prepare();
   bool types_are_alike();

@@ -151,6 +151,27 @@ void PairSph::look_at_widths()
     }
 }
 
+/* Distances along z count as any others, also in two dimensions. create_atoms of an older LAMMPS fills a box
+ * that is thicker along z than the lattice with several planes, one behind the other, and says nothing. */
+void PairSph::look_at_plane()
+{
+  if (domain->dimension != 2) return;
+  double low = HUGE_VAL, high = -HUGE_VAL, h = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!used(atom->type[i])) continue;
+    low = std::min(low, atom->x[i][2]);
+    high = std::max(high, atom->x[i][2]);
+    h = std::max(h, table[H][atom->type[i]][atom->type[i]]);
+  }
+  low = smallest_of_all(world, low);
+  high = largest_of_all(world, high);
+  h = largest_of_all(world, h);
+  if (high - low > 1e-3 * h)
+    voice.fail("in two dimensions all particles must stand in one plane, and they stand from z = " + text(low) +
+               " to " + text(high) + ": make the box thinner along z than the spacing of the lattice, of which "
+               "create_atoms of an older LAMMPS makes as many planes as have room");
+}
+
 /* Without volume yes a particle takes the mass of a neighbour for that of its own fluid. */
 void PairSph::look_at_fluids()
 {

@@ -38,6 +38,7 @@ void PairSph::compute(int eflag, int vflag)
   if (update->setupflag) {
     look_at_sound();
     look_at_widths();
+    look_at_plane();
     look_at_fluids();
     if (wall) look_at_walls();
     if (wall) tell_of_belts();

@@ -76,6 +76,16 @@ def test_a_particle_without_density_is_named_before_its_neighbours():
     lmp.close()
 
 
+def test_planes_one_behind_the_other_are_refused_in_two_dimensions():
+    """create_atoms makes them with LAMMPS of 2021 where the box has room; with newer ones they come from elsewhere."""
+    lmp = start()
+    run(lmp, SQUARE.replace("-0.04 0.04", "-0.2 0.2"))
+    lmp.numpy.extract_atom("x")[0, 2] = -0.16
+    with pytest.raises(Exception, match="in two dimensions all particles must stand in one plane, and they stand from z = -0.16"):
+        run(lmp, "run 0")
+    lmp.close()
+
+
 FLOOR = """
 units lj
 dimension 2
