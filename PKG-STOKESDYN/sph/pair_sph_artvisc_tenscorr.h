@@ -83,7 +83,7 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair> {
   void largest_approach(std::vector<double> &largest);
   /* rho0 of its equation of state; without one the density that it has. */
   double rest_density(int i) const;
-  /* Of owned particle i at its density: with fix sph/grains that of the mixture. */
+  /* Of the water of owned particle i, without the air in spray; with fix sph/grains of the mixture. */
   double volume_of(int i) const;
   /* The smallest sd_sph_growth_limit of particles of these groups that are none of a wall. */
   double growth_limit(int bits) const;

@@ -72,7 +72,9 @@ double PairSph::rest_density(int i) const
 
 double PairSph::volume_of(int i) const
 {
-  return Sph::mass(lmp, i) / (atom->rho[i] * (grains ? 1.0 - grains->fraction(i) : 1.0));
+  const FixSphPressure *eos = state_of(i);
+  const double rho = eos ? sd_sph_density_of_water(&eos->state, atom->rho[i]) : atom->rho[i];
+  return Sph::mass(lmp, i) / (rho * (grains ? 1.0 - grains->fraction(i) : 1.0));
 }
 
 /* Particles of an inlet have the pressure of the fluid before them, as walls, and their own

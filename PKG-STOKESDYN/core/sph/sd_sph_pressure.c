@@ -73,6 +73,11 @@ void sd_sph_keep_size(const sd_sph_state *state, int n, double *rho, const int *
     if ((mask[i] & bit) && rho[i] < least) rho[i] = least;
 }
 
+double sd_sph_density_of_water(const sd_sph_state *s, double rho)
+{
+  return s->no_tension && rho < s->rho0 ? s->rho0 : rho;
+}
+
 void sd_sph_pressures(const sd_sph_state *state, int n, const double *rho, const int *mask, int bit,
                       double *P)
 {

@@ -42,6 +42,10 @@ double sd_sph_least_pressure(const sd_sph_state *state);
 static const double SD_SPH_THINNEST = 0.3;
 void sd_sph_keep_size(const sd_sph_state *state, int n, double *rho, const int *mask, int bit);
 
+/* That of the water in a particle of the density rho: without tension one that is thinner than rho0 is
+ * water that has come apart, with air in between. */
+double sd_sph_density_of_water(const sd_sph_state *state, double rho);
+
 /* P [n] of the particles i with mask[i] & bit; the others keep theirs. */
 void sd_sph_pressures(const sd_sph_state *state, int n, const double *rho, const int *mask, int bit,
                       double *P);

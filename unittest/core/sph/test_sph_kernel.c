@@ -104,6 +104,8 @@ static void states_without_tension(void **state)
     assert_true(sd_sph_density_of(&slack, -1e9) == 900.0);
     CHECK_NEAR(sd_sph_density_of(&slack, sd_sph_pressure(&slack, 950.0)), 950.0, 1e-7);
     assert_true(sd_sph_least_pressure(&slack) == slack.P0);
+    assert_true(sd_sph_density_of_water(&slack, 850.0) == 900.0 && sd_sph_density_of_water(&states[k], 850.0) == 850.0);
+    assert_true(sd_sph_density_of_water(&slack, 950.0) == 950.0);
   }
   const int mask[4] = {2, 2, 2, 1};
   double rho[4] = {-3.0, 880.0, 950.0, -3.0}, kept[4] = {-3.0, 880.0, 950.0, -3.0};

@@ -401,8 +401,9 @@ fix trap all addforce v_pullx v_pully 0
 timestep $(10*2.214297435588181/400)
 """)
     x = by_id(lmp, "x", 3)
-    run(lmp, "run 200 post no")
+    run(lmp, "compute H all sph/probe height y 0 0 0\nthermo_style custom step c_H[1]\nrun 200 post no")
     assert np.abs(by_id(lmp, "x", 3)).max() > 2 * np.abs(x).max()
+    assert lmp.extract_compute("H", 0, 1)[0] == 0    # a fifth of the space is water
     run(lmp, "run 200 post no")
     back = by_id(lmp, "x", 3)
     assert (back * x).sum() / (x * x).sum() == pytest.approx(1, abs=0.02)
