@@ -1,10 +1,12 @@
 /* Every engine: time of a product of N equal spheres at volume fraction 0.2, and its error, the rms of velocities over
  * that of F/(6 pi a), as lines
- *   engine,numbers,spheres,tolerance,seconds,error
- * for speed_error.py.
- *   bench_speed_error N
- * Open sums and lists are compared with their pairs, of some targets, one by one; periodic sums and slits with a product
- * that is far more accurate. Processor time on one core, the least of several products. */
+ *   engine,numbers,spheres,tolerance,placed,seconds,error
+ * for speed_error.py. Spheres do not overlap.
+ *   bench_speed_error N [FILE]
+ * FILE: where the scene of open and periodic boxes goes, with its velocities, for other programs, as doubles
+ *   N, edge of the cube, 3N places, 3N forces, 3N velocities in an open box (of some spheres), 3N in a periodic one
+ * The viscosity is 1 and radii are 1. Open sums and lists are compared with their pairs, of some targets, one by one; periodic sums and slits with a product
+ * that is far more accurate. Processor time on one core, the least of several products; placed: what new places cost. */
 #define _POSIX_C_SOURCE 200809L
 #include "../core/stokes/ewald/periodic.h"
 #include "../core/stokes/slab/slab.h"
@@ -20,7 +22,28 @@ typedef struct {
   double edge[3], *x, *a, *w, *F, *u, *v;
 } scene;
 
-/* In a box of this height, or a cube; heights at least a radius from lower and upper face */
+/* Cells, as cubic as the box allows, chosen at random and in random order: a sphere lies anywhere in each that leaves a
+ * radius to its faces, so none overlap */
+static void scatter(const scene *s, uint64_t *seed)
+{
+  const double spacing = cbrt(s->edge[0] * s->edge[1] * s->edge[2] / s->n);
+  const int high = (int) ceil(s->edge[2] / spacing - 1e-9), wide = (int) ceil(sqrt((double) s->n / high) - 1e-9);
+  const int cells[3] = {wide, wide, high}, all = wide * wide * high;
+  int *cell = malloc(sizeof(int) * (size_t) all);
+  for (int c = 0; c < all; c++) cell[c] = c;
+  for (int i = 0; i < s->n; i++) {
+    const int drawn = i + (int) uniform(seed, 0, all - i);
+    int c = cell[drawn];
+    cell[drawn] = cell[i];
+    for (int d = 0; d < 3; d++, c /= wide) {
+      const double width = s->edge[d] / cells[d], within = d < 2 ? c % wide : c;
+      s->x[3 * i + d] = (within + 0.5) * width + uniform(seed, 1.0 - 0.5 * width, 0.5 * width - 1.0);
+    }
+  }
+  free(cell);
+}
+
+/* In a box of this height, or a cube, at least a radius from its faces */
 static scene make(int n, double height)
 {
   const size_t m = (size_t) n;
@@ -28,14 +51,9 @@ static scene make(int n, double height)
   scene s = {n, n > 200000 ? 2 : n > 20000 ? 3 : 9, {wide, wide, high}, malloc(24 * m), malloc(8 * m), malloc(8 * m),
              malloc(24 * m), malloc(24 * m), malloc(24 * m)};
   uint64_t seed = 9;
-  for (size_t i = 0; i < m; i++) {
-    s.a[i] = s.w[i] = 1.0;
-    for (int d = 0; d < 3; d++) {
-      const double margin = d == 2 && height > 0.0;
-      s.x[3 * i + (size_t) d] = uniform(&seed, margin, s.edge[d] - margin);
-      s.F[3 * i + (size_t) d] = uniform(&seed, -1, 1);
-    }
-  }
+  scatter(&s, &seed);
+  for (size_t i = 0; i < m; i++) s.a[i] = s.w[i] = 1.0;
+  for (size_t i = 0; i < 3 * m; i++) s.F[i] = uniform(&seed, -1, 1);
   return s;
 }
 
@@ -44,10 +62,13 @@ static void scene_free_all(scene *s)
   free(s->x), free(s->a), free(s->w), free(s->F), free(s->u), free(s->v);
 }
 
-static void tell(const scene *s, const char *engine, const char *numbers, double tolerance, double seconds,
-                 double error)
+typedef struct {
+  double placed, product;
+} seconds;
+
+static void tell(const scene *s, const char *engine, const char *numbers, double tolerance, seconds took, double error)
 {
-  printf("%s,%s,%d,%g,%.6g,%.3g\n", engine, numbers, s->n, tolerance, seconds, error);
+  printf("%s,%s,%d,%g,%.6g,%.6g,%.3g\n", engine, numbers, s->n, tolerance, took.placed, took.product, error);
   fflush(stdout);
 }
 
@@ -61,6 +82,19 @@ static double product(sd_mobility *omega, const scene *s)
     least = fmin(least, cpu() - begin);
   }
   return least;
+}
+
+/* Of a mobility that is new: it is placed twice, since tables and plans of transforms are made once in a run */
+static seconds measure(sd_mobility *omega, const sd_mobility_engine *engine, const sd_mobility_scene *places,
+                       const scene *s)
+{
+  double placed = 0.0;
+  for (int k = 0; k < 2; k++) {
+    const double begin = cpu();
+    if (sd_mobility_place(omega, engine, places) != SD_OK) exit(1);
+    placed = cpu() - begin;
+  }
+  return (seconds){placed, product(omega, s)};
 }
 
 /* u against v, of every `step`th sphere */
@@ -109,9 +143,8 @@ static void all_pairs(const scene *s)
     const sd_mobility_scene scene = {.how = {.width = 3, .tolerance = tolerances[k]}, .n = s->n, .n_all = s->n,
                                      .spheres = {s->x, s->a, s->w}};
     sd_mobility omega = {0};
-    if (sd_mobility_place(&omega, &sd_mobility_all_pairs, &scene) != SD_OK) exit(1);
-    const double seconds = product(&omega, s);
-    tell(s, "all pairs", k ? "float" : "double", tolerances[k], seconds, error(s, sample_step(s)));
+    const seconds took = measure(&omega, &sd_mobility_all_pairs, &scene, s);
+    tell(s, "all pairs", k ? "float" : "double", tolerances[k], took, error(s, sample_step(s)));
     sd_mobility_free(&omega);
   }
 }
@@ -125,9 +158,8 @@ static void list(const scene *s)
   const sd_mobility_scene scene = {.how = {.width = 3}, .n = s->n, .n_all = s->n, .spheres = {s->x, s->a, s->w},
                                    .pairs = &near.pairs};
   sd_mobility omega = {0};
-  if (sd_mobility_place(&omega, &sd_mobility_list, &scene) != SD_OK) exit(1);
-  const double seconds = product(&omega, s);
-  tell(s, "list", "double", 0.0, seconds, error(s, sample_step(s)));
+  const seconds took = measure(&omega, &sd_mobility_list, &scene, s);
+  tell(s, "list", "double", 0.0, took, error(s, sample_step(s)));
   sd_mobility_free(&omega);
   sd_neighbors_free(&near);
 }
@@ -135,13 +167,13 @@ static void list(const scene *s)
 /* --- Ewald sums --- */
 
 /* u of a periodic or an open box; returns the time, or 0 if floats do not do. repeat: 1 for a reference */
-static double ewald(scene *s, int periodic_box, double tolerance, int single, int repeat)
+static seconds ewald(scene *s, int periodic_box, double tolerance, int single, int repeat)
 {
   const sd_ewald_sizes sizes = periodic_sizes(s->a, s->n);
   const sd_ewald_box box = {.edge = {s->edge[0], s->edge[1], s->edge[2]}, .periodic = periodic_box};
   periodic p = {.n = s->n, .n_all = s->n, .width = 3};
   if (sd_ewald_choose(&box, &sizes, 3, tolerance, &p.ewald) != SD_OK) exit(1);
-  if (single && !p.ewald.single) return 0.0;
+  if (single && !p.ewald.single) return (seconds){0};
   p.ewald.single = single;
   sd_mobility_scene scene = {.how = {.width = 3, .ewald = &p.ewald, .second = &p.second}, .n = s->n, .n_all = s->n,
                              .spheres = {s->x, s->a, s->w}};
@@ -151,22 +183,21 @@ static double ewald(scene *s, int periodic_box, double tolerance, int single, in
     scene.spheres = (sd_spheres){p.x, p.a, p.w};
     scene.world = (sd_world){.ctx = &p, .refresh = periodic_refresh};
   }
-  if (sd_mobility_place(&p.omega, &sd_mobility_ewald, &scene) != SD_OK) exit(1);
   const int usual = s->repeat;
   s->repeat = repeat;
-  const double seconds = product(&p.omega, s);
+  const seconds took = measure(&p.omega, &sd_mobility_ewald, &scene, s);
   s->repeat = usual;
   periodic_free(&p);
-  return seconds;
+  return took;
 }
 
 static void ewald_sums(scene *s, int periodic_box, double tightest)
 {
   for (double tolerance = 1e-2; tolerance > 0.9 * tightest; tolerance *= 0.1)
     for (int single = 0; single < 2; single++) {
-      const double seconds = ewald(s, periodic_box, tolerance, single, s->repeat);
-      if (seconds > 0.0)
-        tell(s, periodic_box ? "periodic" : "open", single ? "float" : "double", tolerance, seconds,
+      const seconds took = ewald(s, periodic_box, tolerance, single, s->repeat);
+      if (took.product > 0.0)
+        tell(s, periodic_box ? "periodic" : "open", single ? "float" : "double", tolerance, took,
              error(s, periodic_box ? 1 : sample_step(s)));
     }
 }
@@ -180,29 +211,41 @@ static void slits(int n, double tightest)
   slab_velocities(&walls, &box, s.x, s.a, n, 0.1 * tightest, s.F, s.v);
   for (int i = 0; i < 3 * n; i++) s.v[i] -= s.F[i] / (6.0 * SD_PI);
   for (double tolerance = 1e-2; tolerance > 0.9 * tightest; tolerance *= 0.1) {
-    slab p;
-    sd_slab how = {0};
-    if (slab_choose(&walls, &box, s.x, s.a, n, tolerance, &how) != SD_OK) exit(1);
-    if (slab_try(&p, &how, s.x, s.a, NULL, n) != SD_OK) exit(1);
-    const double seconds = product(&p.omega, &s);
-    tell(&s, "slit", "double", tolerance, seconds, error(&s, 1));
+    slab p = {.n = n};
+    if (slab_choose(&walls, &box, s.x, s.a, n, tolerance, &p.slab) != SD_OK) exit(1);
+    slab_images(&p, s.x, s.a, NULL);
+    const sd_mobility_scene scene = {.how = {.width = 3, .slab = &p.slab}, .n = n, .n_all = p.n_all,
+                                     .spheres = {p.x, p.a, p.w}, .world = {.ctx = &p, .refresh = slab_refresh}};
+    const seconds took = measure(&p.omega, &sd_mobility_slab, &scene, &s);
+    tell(&s, "slit", "double", tolerance, took, error(&s, 1));
     slab_free(&p);
   }
   scene_free_all(&s);
+}
+
+static void write(FILE *file, const double *numbers, int count)
+{
+  if (file && fwrite(numbers, sizeof(double), (size_t) count, file) != (size_t) count) exit(1);
 }
 
 int main(int count, char **words)
 {
   const int n = count > 1 ? atoi(words[1]) : 1000;
   const double tightest = n > 200000 ? 1e-5 : n > 20000 ? 1e-9 : 1e-12;
+  FILE *file = count > 2 ? fopen(words[2], "wb") : NULL;
   scene s = make(n, 0.0);
+  const double head[2] = {n, s.edge[0]};
+  write(file, head, 2), write(file, s.x, 3 * n), write(file, s.F, 3 * n);
   list(&s);
   exact_pairs(&s, INFINITY);
+  write(file, s.v, 3 * n);
   all_pairs(&s);
   ewald_sums(&s, 0, tightest);
   ewald(&s, 1, 0.1 * tightest, 0, 1);
   memcpy(s.v, s.u, sizeof(double) * 3 * (size_t) n);
+  write(file, s.v, 3 * n);
   ewald_sums(&s, 1, tightest);
+  if (file) fclose(file);
   scene_free_all(&s);
   slits(n, tightest);
   return 0;

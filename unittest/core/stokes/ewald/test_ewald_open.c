@@ -89,6 +89,44 @@ static void open_boxes_agree_with_all_pairs(void **state)
   }
 }
 
+/* Equal forces: the cloud is far faster than F/(6 pi a), and so is the error; the tolerance holds for its velocities. */
+static void a_cloud_that_settles_has_the_right_velocities(void **state)
+{
+  (void) state;
+  for (int n = 1000; n <= CHECK_SIZE(8000, 1000); n *= 8) {
+    const size_t count = 3 * (size_t) n;
+    const double edge = cbrt(4.0 / 3.0 * SD_PI * n / 0.2), lo[3] = {0.0}, hi[3] = {edge, edge, edge};
+    double *x = malloc(8 * count), *a = malloc(8 * count), *F = malloc(8 * count);
+    double *u = malloc(8 * count), *exact = malloc(8 * count);
+    uint64_t seed = 5;
+    for (int i = 0; i < 3 * n; i++) x[i] = uniform(&seed, 0, edge), F[i] = 6.0 * SD_PI * (i % 3 == 2), a[i] = 1.0;
+    sd_ewald_box box = {0};
+    sd_mobility_scene scene = {.how = {.width = 3}, .n = n, .n_all = n, .spheres = {x, a, a}};
+    sd_mobility m = {0};
+    assert_int_equal(sd_ewald_box_around(&box, -1, lo, hi, 1.0), 1);
+    assert_int_equal(sd_mobility_place(&m, &sd_mobility_all_pairs, &scene), SD_OK);
+    assert_int_equal(sd_mobility_apply(&m, F, exact), SD_OK);
+    sd_mobility_free(&m);
+    for (int digits = 2; digits <= 8; digits++) {
+      const sd_ewald_sizes sizes = periodic_sizes(a, n);
+      double off = 0.0, speed = 0.0;
+      sd_ewald how;
+      assert_int_equal(sd_ewald_choose(&box, &sizes, 3, pow(10.0, -digits), &how), SD_OK);
+      scene.how.ewald = &how;
+      assert_int_equal(sd_mobility_place(&m, &sd_mobility_ewald, &scene), SD_OK);
+      assert_int_equal(sd_mobility_apply(&m, F, u), SD_OK);
+      sd_mobility_free(&m);
+      for (int i = 0; i < 3 * n; i++) off += pow(u[i] - exact[i], 2) / n, speed += pow(exact[i], 2) / n;
+      off = sqrt(off) * pow(10.0, digits);
+      if (getenv("STOKESDYN_SHOW"))
+        printf("%d spheres, 1e-%d: %.1f tolerances over F/(6 pi a), %.2f over their velocities\n", n, digits, off,
+               off / sqrt(speed));
+      assert_true(off < 0.3 * sqrt(speed));
+    }
+    free(x), free(F), free(u), free(exact), free(a);
+  }
+}
+
 /* The box goes along, its tables stay, and so does the answer, but for rounding. */
 static void a_cloud_that_moves_as_a_whole_keeps_its_tables(void **state)
 {
@@ -175,6 +213,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(open_boxes_agree_with_all_pairs),
+      cmocka_unit_test(a_cloud_that_settles_has_the_right_velocities),
       cmocka_unit_test(a_cloud_that_moves_as_a_whole_keeps_its_tables),
       cmocka_unit_test(a_box_above_a_wall_goes_along_it_alone),
       cmocka_unit_test(few_spheres_cost_more_than_all_pairs),
