@@ -37,7 +37,7 @@ class FixSphGrains : public SphFix {
    * goes by */
   const double *mixture(const double *v);
   /* Rates of the density [nlocal] of that velocity become those of the water itself. */
-  void divide_rates(const double *order, int columns, bool shifts, double *rate);
+  void divide_rates(const double *slope, const double *du, double *rate);
 
  protected:
   bool restored() const override { return filled != 0.0; }

@@ -146,9 +146,9 @@ const double *FixSphGrains::mixture(const double *v)
   return moved.data();
 }
 
-void FixSphGrains::divide_rates(const double *order, int columns, bool shifts, double *rate)
+void FixSphGrains::divide_rates(const double *slope, const double *du, double *rate)
 {
-  sd_sph_grain_rates(atom->nlocal, phi.data(), order, columns, shifts, rate);
+  sd_sph_grain_rates(atom->nlocal, phi.data(), slope, du, rate);
 }
 
 // --- a run that goes on ---------------------------------------------------------------------------

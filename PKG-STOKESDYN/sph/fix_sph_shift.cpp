@@ -41,28 +41,26 @@ int FixSphShift::unpack_border(int n, int first, double *buf)
   return DU * n;
 }
 
-void FixSphShift::keep_rows(int n, const double *order, const double *kick)
+void FixSphShift::keep_rows(int n, const double *du, const double *B, const double *kick)
 {
-  const size_t columns = matrices ? 16 : 8;
-  for (int i = 0; i < n; i++) std::copy_n(order + columns * i + 4, DU, shifts.writable(i));
-  for (int i = 0; i < atom->nlocal; i++) *wholes.writable(i) = order[columns * i + 7];
+  for (int i = 0; i < n; i++) std::copy_n(du + 4 * (size_t) i, DU, shifts.writable(i));
+  for (int i = 0; i < atom->nlocal; i++) *wholes.writable(i) = du[4 * (size_t) i + 3];
   has_rows = 1.0;
   if (!matrices) return;
   for (int i = 0; i < atom->nlocal; i++) {
     double *row = rest.writable(i);
-    std::copy_n(order + columns * i + 8, 6, row);
+    std::copy_n(B + 8 * (size_t) i, 6, row);
     std::copy_n(kick + 3 * (size_t) i, 3, row + 6);
   }
 }
 
-void FixSphShift::put_back(double *order, double *kick) const
+void FixSphShift::put_back(double *du, double *B, double *kick) const
 {
-  const size_t columns = matrices ? 16 : 8;
   for (int i = 0; i < atom->nlocal; i++) {
-    std::copy_n(shifts[i], DU, order + columns * i + 4);
-    order[columns * i + 7] = *wholes[i];
+    std::copy_n(shifts[i], DU, du + 4 * (size_t) i);
+    du[4 * (size_t) i + 3] = *wholes[i];
     if (!matrices || !rest.has(i)) continue;    // a new atom: B and kick of this moment
-    std::copy_n(rest[i], 6, order + columns * i + 8);
+    std::copy_n(rest[i], 6, B + 8 * (size_t) i);
     std::copy_n(rest[i] + 6, 3, kick + 3 * (size_t) i);
   }
 }

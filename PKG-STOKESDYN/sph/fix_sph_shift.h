@@ -27,10 +27,9 @@ class FixSphShift : public RowsFix {
   /* Has there been a step? */
   bool filled() const { return has_rows != 0.0; }
   /* To and from the pair style's rows of sd_sph_order.h: du of all n, of this rank's whether their support is
-   * whole, and with pliant shift and
-   * correction B and kick of this rank's. */
-  void keep_rows(int n, const double *order, const double *kick);
-  void put_back(double *order, double *kick) const;
+   * whole, and with pliant shift and correction B and kick of this rank's. */
+  void keep_rows(int n, const double *du, const double *B, const double *kick);
+  void put_back(double *du, double *B, double *kick) const;
 
  protected:
   bool restored() const override { return filled(); }

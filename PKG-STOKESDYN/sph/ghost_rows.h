@@ -1,4 +1,4 @@
-/* A pair style or a fix that sends rows of one array at a time between owned particles and ghosts. */
+/* A pair style or a fix that sends rows of arrays between owned particles and ghosts. */
 #ifndef SD_GHOST_ROWS_H
 #define SD_GHOST_ROWS_H
 
@@ -6,60 +6,78 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
+#include <vector>
 
 namespace StokesDyn {
+
+/* Rows [width] of atoms */
+struct RowsToSend {
+  double *rows;
+  int width;
+  double *row(int i) const { return rows + (size_t) i * width; }
+};
 
 template <class Base> class GhostRows : public Base {
  public:
   using Base::Base;
+  /* one array after the other, each with all its rows */
   int pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/, int * /*pbc*/) override
   {
-    for (int k = 0; k < n; k++) buf = std::copy_n(row(list[k]), columns, buf);
-    return n * columns;
+    const double *begin = buf;
+    for (const RowsToSend &of : arrays)
+      for (int k = 0; k < n; k++) buf = std::copy_n(of.row(list[k]), of.width, buf);
+    return (int) (buf - begin);
   }
   void unpack_forward_comm(int n, int first, double *buf) override
   {
-    std::copy_n(buf, (size_t) n * columns, row(first));
+    for (const RowsToSend &of : arrays) {
+      const size_t numbers = (size_t) n * of.width;
+      std::copy_n(buf, numbers, of.row(first));
+      buf += numbers;
+    }
   }
   int pack_reverse_comm(int n, int first, double *buf) override
   {
-    std::copy_n(row(first), (size_t) n * columns, buf);
-    return n * columns;
+    const RowsToSend &of = arrays[0];
+    std::copy_n(of.row(first), (size_t) n * of.width, buf);
+    return n * of.width;
   }
   void unpack_reverse_comm(int n, int *list, double *buf) override
   {
+    const RowsToSend &of = arrays[0];
     for (int k = 0; k < n; k++)
-      for (int c = 0; c < columns; c++, buf++) {
-        double &mine = row(list[k])[c];
+      for (int c = 0; c < of.width; c++, buf++) {
+        double &mine = of.row(list[k])[c];
         mine = largest ? std::max(mine, *buf) : mine + *buf;
       }
   }
 
  protected:
-  /* Rows [width] of atoms to their ghosts; and those of ghosts to the owners, who add them up, or keep the
-   * largest. width: at most comm_forward and comm_reverse, which the constructor says */
+  /* Rows of atoms to their ghosts, of several arrays in one message; and those of ghosts to the owners, who
+   * add them up, or keep the largest. Numbers of an atom: at most comm_forward and comm_reverse, which the
+   * constructor says */
+  void forward(std::vector<RowsToSend> sent)
+  {
+    arrays = std::move(sent);
+    Compat::forward_comm(this->comm, this);
+  }
   void forward(double *rows, int width)
   {
     assert(width <= this->comm_forward);
-    array = rows;
-    columns = width;
-    Compat::forward_comm(this->comm, this);
+    forward({{rows, width}});
   }
   void reverse(double *rows, int width, bool keep_largest = false)
   {
     assert(width <= this->comm_reverse);
-    array = rows;
-    columns = width;
+    arrays = {{rows, width}};
     largest = keep_largest;
     Compat::reverse_comm(this->comm, this);
   }
 
  private:
-  double *array = nullptr;
-  int columns = 0;
+  std::vector<RowsToSend> arrays;
   bool largest = false;
-
-  double *row(int i) const { return array + (size_t) i * columns; }
 };
 
 }    // namespace StokesDyn

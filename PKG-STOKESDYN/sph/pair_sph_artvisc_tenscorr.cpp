@@ -57,7 +57,7 @@ PairSph::PairSph(LAMMPS *lmp) :
   respa_enable = 0;
   restartinfo = 1;
   no_virial_fdotr_compute = 1;
-  comm_forward = SD_SPH_MOST_COLUMNS;
+  comm_forward = 16;    // slope4, du4 and B8
   comm_reverse = SD_SPH_MOTION;
 }
 
@@ -357,7 +357,7 @@ double PairSph::Neighbours::bytes() const
 double PairSph::memory_usage()
 {
   double bytes = near.bytes() + around.bytes() + of_flow.bytes();
-  for (const auto *v : {&x4, &v4, &f4, &sums, &weights, &order, &own, &rubs, &scratch})
+  for (const auto *v : {&x4, &v4, &f4, &sums, &weights, &slope4, &du4, &B8, &own, &rubs, &scratch})
     bytes += v->capacity() * sizeof(double);
   for (const auto *v : {&P, &masses, &rate, &each, &kick, &wall_rows, &displacing, &viscosities, &inertia})
     bytes += v->capacity() * sizeof(double);

@@ -108,7 +108,7 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair> {
   sd_sph_both neighbours_of_each() { return near.both(atom->nlocal); }
   /* For fix sph/tension: is the support of particle i, of this rank or a ghost, whole? In the middle of the
    * latest step. */
-  bool is_whole(int i) const { return order[(pliant ? SD_SPH_MOST_COLUMNS : 8) * (size_t) i + 7] > 0.0; }
+  bool is_whole(int i) const { return du4[4 * (size_t) i + 3] > 0.0; }
   /* [3 n] the velocity that particles are moved with beside their own; nullptr: none. */
   const double *shift() const;
   /* [4 n] the latest force of this style on each owned particle, and what of it is friction (artVisc
@@ -210,7 +210,7 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair> {
   sd_sph_particles particles = {};
   std::vector<sd_sph_coefficients> coefficients;
   MovedBox moved_box;
-  Rows x4, v4, f4, sums, weights, spins, order, own, rubs, scratch;
+  Rows x4, v4, f4, sums, weights, spins, slope4, du4, B8, own, rubs, scratch;
   std::vector<double> P, masses, rate, each, kick, wall_rows, displacing, viscosities, inertia;
   int friction_steps = 0;    // of the last implicit friction
   std::vector<int> classes, phases;

@@ -97,7 +97,7 @@ void PairSph::sum_rates(double margin)
   sd_sph_rates(&model, &raw, &particles, rate.data(), &found);
   pairs = {raw.n, ~0, raw.first, near.own.data(), near.neighbor.data()};
   reverse(rate.data(), 1);
-  if (grains) grains->divide_rates(nullptr, 0, false, rate.data());
+  if (grains) grains->divide_rates(nullptr, nullptr, rate.data());
 }
 
 /* All sums that delta, shift and correction ask for, of both particles of each pair: a list both
@@ -123,13 +123,15 @@ void PairSph::sum_middle(double margin)
 /* The rates, and what the force and the next step need of the middle. */
 void PairSph::close_sums()
 {
-  const int n = particles.n, columns = sd_sph_columns(&model);
-  rate.assign(n + 1, 0.0);
-  order.resize(columns * (size_t) (n + 1));
+  const size_t n = particles.n, rows = n + 1;
+  rate.assign(rows, 0.0);
+  slope4.resize(4 * rows);
+  du4.resize(shifts ? 4 * rows : 0);
+  B8.resize(corrects || pliant ? 8 * rows : 0);
   kick.resize(corrects || pliant ? 3 * (size_t) atom->nlocal + 1 : 0);
   const double least = update->setupflag ? 0.6 : 0.5;
-  const sd_sph_closing closing = {atom->nlocal, sums.data(),  atom->mask,  own_vest_bits, full,
-                                  least,        whole,       rate.data(), order.data(), kick.data()};
+  const sd_sph_closing closing = {atom->nlocal, sums.data(), atom->mask,    own_vest_bits, full,      least,
+                                  whole,        rate.data(), slope4.data(), du4.data(),    B8.data(), kick.data()};
   const int stops = sd_sph_close(&model, &particles, &closing);
   if (full && !corrects) {
     if (update->setupflag) look_at_surface(stops);
@@ -138,14 +140,19 @@ void PairSph::close_sums()
                              " is at a free surface: the smallest eigenvalue of the matrix of its neighbours "
                              "is below " +
                              text(least) + "; use shift yes where there is a free surface");
-  if (state && update->setupflag && resumes()) state->put_back(order.data(), kick.data());
-  forward(order.data(), columns);
-  std::fill_n(&order[columns * (size_t) n], columns, 0.0);
-  if (state) state->keep_rows(n, order.data(), kick.data());
+  if (state && update->setupflag && resumes()) state->put_back(du4.data(), B8.data(), kick.data());
+  std::vector<RowsToSend> made = {{slope4.data(), 4}};
+  if (shifts) made.push_back({du4.data(), 4});
+  if (!B8.empty()) made.push_back({B8.data(), 8});
+  forward(made);
+  for (const RowsToSend &of : made) std::fill_n(of.row((int) n), of.width, 0.0);
+  if (state) state->keep_rows((int) n, du4.data(), B8.data(), kick.data());
 
-  particles.order = order.data();
+  particles.slope = slope4.data();
+  particles.du = du4.data();
+  particles.B = B8.data();
   const sd_sph_both close = near.both(atom->nlocal);
-  if (grains) grains->divide_rates(order.data(), columns, shifts, rate.data());
+  if (grains) grains->divide_rates(slope4.data(), shifts ? du4.data() : nullptr, rate.data());
   sd_sph_diffusion(&model, &close, &particles, rate.data());
 }
 

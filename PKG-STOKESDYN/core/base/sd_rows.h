@@ -59,21 +59,32 @@ INLINE void transpose(vec r[4])
 #endif
 
 /* Column c of rows j[0 .. LANES-1], `columns` apart, becomes r[c]. */
+#define ROW(k) load4(rows + columns * (long) j[k])
 INLINE void gather(const real *rows, int columns, const int j[LANES], vec r[4])
 {
-  for (int k = 0; k < 4; k++) {
-    const row4 first = load4(rows + columns * (long) j[k]);
-#if LANES == 16
-    r[k] = four_beside(first, load4(rows + columns * (long) j[k + 4]),
-                       load4(rows + columns * (long) j[k + 8]), load4(rows + columns * (long) j[k + 12]));
-#elif LANES == 8
-    r[k] = beside(first, load4(rows + columns * (long) j[k + 4]));
+#if LANES == 8 && !defined(SD_SINGLE)
+  /* Side by side stand rows of which whole quarters of vectors make columns: that takes no index. */
+  const vec e = beside(ROW(0), ROW(2)), f = beside(ROW(1), ROW(3));
+  const vec g = beside(ROW(4), ROW(6)), h = beside(ROW(5), ROW(7));
+  const vec a = SHUFFLE(e, f, 0, 8, 2, 10, 4, 12, 6, 14), b = SHUFFLE(e, f, 1, 9, 3, 11, 5, 13, 7, 15);
+  const vec c = SHUFFLE(g, h, 0, 8, 2, 10, 4, 12, 6, 14), d = SHUFFLE(g, h, 1, 9, 3, 11, 5, 13, 7, 15);
+  r[0] = SHUFFLE(a, c, 0, 1, 4, 5, 8, 9, 12, 13);
+  r[1] = SHUFFLE(b, d, 0, 1, 4, 5, 8, 9, 12, 13);
+  r[2] = SHUFFLE(a, c, 2, 3, 6, 7, 10, 11, 14, 15);
+  r[3] = SHUFFLE(b, d, 2, 3, 6, 7, 10, 11, 14, 15);
 #else
-    r[k] = first;
+  for (int k = 0; k < 4; k++)
+#if LANES == 16
+    r[k] = four_beside(ROW(k), ROW(k + 4), ROW(k + 8), ROW(k + 12));
+#elif LANES == 8
+    r[k] = beside(ROW(k), ROW(k + 4));
+#else
+    r[k] = ROW(k);
 #endif
-  }
   transpose(r);
+#endif
 }
+#undef ROW
 
 /* Rows j[0 .. LANES-1] += column[0..3]. One after the other: a row may be there more than once. */
 INLINE void add_to_rows(real *rows, int columns, const int j[LANES], vec column[4])

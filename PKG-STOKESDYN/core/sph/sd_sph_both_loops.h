@@ -44,9 +44,7 @@ INLINE void add_columns(const pairs_with_sums *q, sd_sph_level level, vec *sum)
 /* The row of a particle from the sums in lanes. */
 INLINE void store_columns(double *row, int columns, vec *sum)
 {
-  double largest = 0.0;
-  if (columns > SD_SPH_MAXIMUM)
-    for (int k = 0; k < LANES; k++) largest = fmax(largest, sum[SD_SPH_MAXIMUM][k]);
+  const double largest = columns > SD_SPH_MAXIMUM ? largest_of(sum[SD_SPH_MAXIMUM]) : 0.0;
   for (int first = 0; first < columns; first += 4) store4(row + first, over_lanes(sum + first));
   if (columns > SD_SPH_MAXIMUM) row[SD_SPH_MAXIMUM] = largest;
 }
@@ -55,7 +53,7 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_both *list, const sd_
                    double *sums, const sd_sph_near *near, sd_sph_level level, sd_sph_kernel kernel,
                    int many)
 {
-  const int volume = sd_sph_of_fluids(model);
+  const int volume = sd_sph_of_fluids(model), fluids = volume && p->phase;
   const vec zero = all(0.0), two = all(2.0);
   const int columns = level == SD_SPH_MIXTURE ? 32
       : level == SD_SPH_VELOCITY              ? 24
@@ -65,45 +63,43 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_both *list, const sd_
     const row4 xi = load4(p->x4 + 4 * (size_t) i), vi = load4(p->v4 + 4 * (size_t) i);
     const sd_sph_coefficients *row = ROW_OF(i);
     const vec mi = all(many ? p->m[i] : p->mass);
-    const int phase = p->phase ? p->phase[i] : 0;
+    const int phase = fluids ? p->phase[i] : 0, own = list->own[i];
     vec sum[32];
     for (int c = 0; c < columns; c++) sum[c] = zero;
     near->neighbor[i] = last;
 
     for (int at = 0; at < list->count[i]; at += LANES) {
       const int *j = list->neighbor[i] + at;
-      if (at == list->own[i]) near->own[i] = (int) (last - near->neighbor[i]);
       const places x = from(p->x4, j, xi);
       vec u[4], vd = zero;
       gather(p->v4, 4, j, u);
-      pairs_with_sums q = {.V = x.last, .rho_i = all(vi[3]), .rho_j = u[3]};
+      pairs_with_sums q = {.V = larger(x.last, -x.last), .rho_i = all(vi[3]), .rho_j = u[3]};
       for (int c = 0; c < 3; c++) {
         q.d[c] = x.d[c];
         q.u[c] = vi[c] - u[c];
         vd += q.d[c] * q.u[c];
       }
       const vec inv_h = COEFFICIENT(inv_h), r = root(x.r2), distance = smaller(r * inv_h, two);
-      last += keep(last, j, bits(r * inv_h < two + near->margin * inv_h));
+      const unsigned closer = bits(r * inv_h < two + near->margin * inv_h);
+      if (own >= at && own < at + LANES)
+        near->own[i] = (int) (last - near->neighbor[i]) +
+            __builtin_popcount(closer & neighbours_of(own - at));
+      last += keep(last, j, closer);
       q.g = COEFFICIENT(grad) * G(kernel, distance);
       vec w = MASSES * q.g * vd;
       if (volume) w *= 2.0 * vi[3] / (vi[3] + u[3]);
       sum[0] += w;
 
       q.near = q.g;
-      vec moves = all(1.0);
-      if (p->phase) {
-        const yes_no other = phases(p->phase, j);
-        moves = where(other >= same(0), moves, zero);
-        if (volume) q.near = where(other == same(phase), q.g * moves, zero);
-      }
+      const yes_no moves = x.last > zero;    // the filler does not
+      if (fluids) q.near = where(moves & (phases(p->phase, j) == same(phase)), q.g, zero);
       if (level >= SD_SPH_DISORDER) {
         q.f = COEFFICIENT(tens) * K(kernel, distance);
-        /* The filler is far away and rests, which is fast along d: only neighbours count. */
-        q.speed = where(distance < two, moves * larger(vd, -vd) / larger(r, all(1e-300)), zero);
+        q.speed = where(moves & (distance < two), larger(vd, -vd) / larger(r, all(1e-300)), zero);
       }
       add_columns(&q, level, sum);
     }
-    if (list->own[i] == list->count[i]) near->own[i] = (int) (last - near->neighbor[i]);
+    if (own == list->count[i]) near->own[i] = (int) (last - near->neighbor[i]);
     while ((last - near->neighbor[i]) % SD_SPH_LANES) *last++ = p->n;
     near->count[i] = (int) (last - near->neighbor[i]);
     store_columns(sums + (size_t) columns * i, columns, sum);
@@ -115,10 +111,10 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_both *list, const sd_
 INLINE void diffusion(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
                       double *rate, sd_sph_kernel kernel, int many)
 {
+  const int fluids = sd_sph_of_fluids(model) && p->phase;
   const vec zero = all(0.0), two = all(2.0);
-  const int columns = sd_sph_columns(model);
   for (int i = 0; i < list->n; i++) {
-    const row4 xi = load4(p->x4 + 4 * (size_t) i), gi = load4(p->order + (size_t) columns * i);
+    const row4 xi = load4(p->x4 + 4 * (size_t) i), gi = load4(p->slope + 4 * (size_t) i);
     const sd_sph_coefficients *row = ROW_OF(i);
     const int phase = p->phase ? p->phase[i] : 0;
     if (phase < 0) continue;
@@ -128,11 +124,11 @@ INLINE void diffusion(const sd_sph_model *model, const sd_sph_both *list, const 
       const int *j = list->neighbor[i] + at;
       const places x = from(p->x4, j, xi);
       vec gj[4], along = zero;
-      gather(p->order, columns, j, gj);
+      gather(p->slope, 4, j, gj);
       for (int c = 0; c < 3; c++) along += (gi[c] + gj[c]) * x.d[c];
       const vec q = smaller(root(x.r2) * COEFFICIENT(inv_h), two);
-      vec g = COEFFICIENT(grad) * G(kernel, q) * x.last;
-      if (p->phase) g = where(phases(p->phase, j) == same(phase), g, zero);
+      vec g = COEFFICIENT(grad) * G(kernel, q) * larger(x.last, zero);
+      if (fluids) g = where(phases(p->phase, j) == same(phase), g, zero);
       sum -= COEFFICIENT(diffusion) * g * (2.0 * (gj[3] - gi[3]) + along);
     }
     rate[i] += sum_of(sum);

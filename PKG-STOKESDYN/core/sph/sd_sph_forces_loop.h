@@ -18,8 +18,6 @@ typedef struct {
   ((has).scheme == SD_SPH_SHIFT || (has).scheme == SD_SPH_SHIFT_PLIANT ||                           \
    (has).scheme == SD_SPH_VOLUME_SHIFT)
 
-#define ROW_OF_ORDER(has) ((has).scheme == SD_SPH_SHIFT_PLIANT ? 16 : 8)
-
 #define CORRECTS(has) \
   ((has).scheme == SD_SPH_CORRECTION || (has).scheme == SD_SPH_VOLUME_CORRECTION)
 
@@ -46,9 +44,9 @@ INLINE particle particle_of(const sd_sph_model *model, const sd_sph_particles *p
                  .v = load4(p->v4 + 4 * (size_t) i),
                  .m = all(many ? p->m[i] : p->mass),
                  .row = ROW_OF(i)};
-  if (CARRIES(has)) of.du = load4(p->order + ROW_OF_ORDER(has) * (size_t) i + 4);
+  if (CARRIES(has)) of.du = load4(p->du + 4 * (size_t) i);
   if (has.scheme == SD_SPH_SHIFT_PLIANT || CORRECTS(has))
-    for (int c = 0; c < 8; c++) of.B[c] = all(p->order[16 * (size_t) i + 8 + c]);
+    for (int c = 0; c < 8; c++) of.B[c] = all(p->B[8 * (size_t) i + c]);
   return of;
 }
 
@@ -129,8 +127,7 @@ INLINE void through_both(const sd_sph_particles *p, const particle *i, const int
 {
   const vec both = q->A_i + q->A_j;
   vec B[8];
-  gather(p->order + 8, 16, j, B);
-  gather(p->order + 12, 16, j, B + 4);
+  gather_eight(p->B, j, B);
   const yes_no wall_i = i->B[6] > 0.5, wall_j = B[6] > 0.5;
   const vec mine = where(wall_j, both, where(wall_i, all(0.0), q->A_i)), theirs = both - mine;
   for (int c = 0; c < 6; c++) B[c] = mine * i->B[c] + theirs * B[c];
@@ -174,7 +171,7 @@ INLINE void opposite_forces(const sd_sph_model *model, const sd_sph_particles *p
   /* V_a V_b rho_a = m_a m_b / rho_b: momentum that a takes away, and that b brings. */
   if (CARRIES(has)) {
     vec du[4], mine = all(0.0), theirs = all(0.0);
-    gather(p->order + 4, ROW_OF_ORDER(has), j, du);
+    gather(p->du, 4, j, du);
     for (int c = 0; c < 3; c++) {
       mine += i->du[c] * q->d[c];
       theirs += du[c] * q->d[c];
@@ -207,8 +204,8 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
     vec sum[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
 
     for (int at = 0; at < count; at += LANES) {
-      int j[LANES];
-      next(list->neighbor[i] + at, count - at, list->mask, p->n, j);
+      int room[LANES];
+      const int *j = next(list->neighbor[i] + at, count - at, list->mask, p->n, room);
       const pairs_of_one q = meet(p, &of_i, j, has);
       nearest = smaller(q.r2, nearest);
       vec F[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
@@ -219,7 +216,7 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
         sum[3] += q.masses * w;
         F[3] = -of_i.m * w;
       }
-      if (each) each = hand_out(F, count - at, each);
+      if (SELDOM(each != NULL)) each = hand_out(F, count - at, each);
       take_from(f4, j, F);
     }
     add4(f4 + 4 * (size_t) i, over_lanes(sum));
@@ -229,12 +226,11 @@ INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const s
 
 /* B_i d, and d.B d / r^2 with the mean of the two. Where one of them is a wall, it has the B of the
  * other. */
-INLINE vec corrected(const double *order, const vec own[8], const int j[LANES], const vec d[3],
+INLINE vec corrected(const double *B, const vec own[8], const int j[LANES], const vec d[3],
                      vec r2, vec mine[3])
 {
   vec other[8], theirs[3], product = all(0.0);
-  gather(order + 8, 16, j, other);
-  gather(order + 12, 16, j, other + 4);
+  gather_eight(B, j, other);
   turn(own, d, mine);
   turn(other, d, theirs);
   const yes_no wall_j = other[6] > 0.5, wall_i = own[6] > 0.5;
@@ -275,7 +271,7 @@ INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const s
       nearest = smaller(q.r2, nearest);
       const vec weight = -q.m * q.inverse * q.g * pressures_on(wall, &q, scheme);
       vec F[3], mine[3], ratio = all(1.0);
-      if (pairwise) ratio = corrected(p->order, of_i.B, j, q.d, q.r2, mine);
+      if (pairwise) ratio = corrected(p->B, of_i.B, j, q.d, q.r2, mine);
       opposite_forces(model, p, &of_i, j, &q, ratio, has, F);
       for (int c = 0; c < 3; c++) {
         if (pairwise)
@@ -284,7 +280,7 @@ INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const s
           slope[c] += weight * q.d[c];
         sum[c] += F[c];
       }
-      if (each) each = hand_out(F, LANES, each);
+      if (SELDOM(each != NULL)) each = hand_out(F, LANES, each);
     }
     vec turned[3];
     turn(of_i.B, slope, turned);

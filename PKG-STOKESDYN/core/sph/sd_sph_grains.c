@@ -1,6 +1,7 @@
 #include "sd_sph_grains.h"
 
 #include "sd_constants.h"
+#include "sd_linear.h"
 
 #include <math.h>
 #include <string.h>
@@ -277,12 +278,10 @@ void sd_sph_grain_reactions(const sd_sph_around *list, const double *weight, con
         reaction[3 * (size_t) list->particle[p] + c] -= weight[p] * F[3 * (size_t) j + c];
 }
 
-void sd_sph_grain_rates(int n, const double *phi, const double *order, int columns, int shifts,
-                        double *rate)
+void sd_sph_grain_rates(int n, const double *phi, const double *slope, const double *du, double *rate)
 {
   for (int i = 0; i < n; i++) {
-    const double *row = shifts ? order + (size_t) columns * i : NULL;
-    const double found = shifts ? row[4] * row[0] + row[5] * row[1] + row[6] * row[2] : 0.0;
+    const double found = du ? sd_dot(du + 4 * (size_t) i, slope + 4 * (size_t) i) : 0.0;
     rate[i] = (rate[i] - found) / (1.0 - phi[i]) + found;
   }
 }

@@ -145,9 +145,8 @@ void sd_sph_grain_reactions(const sd_sph_around *list, const double *weight, con
 double sd_sph_sphere(double a);
 
 /* The rates [n] of a density that would follow q become those of the water: divided by eps, but
- * for what shift adds, du.grad rho in order (sd_sph_order.h, columns per row). */
-void sd_sph_grain_rates(int n, const double *phi, const double *order, int columns, int shifts,
-                        double *rate);
+ * for what shift adds, du.grad rho; slope and du as of sd_sph_particles, du NULL: no shift. */
+void sd_sph_grain_rates(int n, const double *phi, const double *slope, const double *du, double *rate);
 
 SD_END_C
 #endif

@@ -20,8 +20,8 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
     near->neighbor[i] = last;
 
     for (int at = 0; at < count; at += LANES) {
-      int j[LANES];
-      next(neighbor + at, count - at, list->mask, p->n, j);
+      int room[LANES];
+      const int *j = next(neighbor + at, count - at, list->mask, p->n, room);
       const places x = from(p->x4, j, xi);
       vec u[4], vd = all(0.0);
       gather(p->v4, 4, j, u);
@@ -62,8 +62,8 @@ INLINE void gradients(const sd_sph_model *model, const sd_sph_list *list, const 
     for (int c = 0; c < SD_SPH_GRADIENTS; c++) sum[c] = zero;
 
     for (int at = 0; at < count; at += LANES) {
-      int j[LANES];
-      next(neighbor + at, count - at, list->mask, p->n, j);
+      int room[LANES];
+      const int *j = next(neighbor + at, count - at, list->mask, p->n, room);
       const places x = from(p->x4, j, xi);
       vec v[4], part[SD_SPH_GRADIENTS];
       gather(p->v4, 4, j, v);
@@ -108,8 +108,8 @@ INLINE void weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_s
     vec sum[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
 
     for (int at = 0; at < count; at += LANES) {
-      int j[LANES];
-      next(neighbor + at, count - at, list->mask, p->n, j);
+      int room[LANES];
+      const int *j = next(neighbor + at, count - at, list->mask, p->n, room);
       vec qj[4];
       gather(q, 4, j, qj);
       const vec r = root(from(p->x4, j, xi).r2);
@@ -149,8 +149,8 @@ INLINE void before_walls(const sd_sph_model *model, const sd_sph_list *list,
     for (int c = 0; c < 8; c++) sum[c] = zero;
 
     for (int at = 0; at < count; at += LANES) {
-      int j[LANES];
-      next(neighbor + at, count - at, list->mask, p->n, j);
+      int room[LANES];
+      const int *j = next(neighbor + at, count - at, list->mask, p->n, room);
       const yes_no counts = phases(p->phase, j) == same(~p->phase[i]);
       if (!any(counts)) continue;
       const places x = from(p->x4, j, xi);

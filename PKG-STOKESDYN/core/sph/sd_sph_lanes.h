@@ -44,8 +44,13 @@ INLINE double sum_of(vec a)
 INLINE double least_of(vec a)
 {
   double least = a[0];
-  for (int k = 1; k < LANES; k++) least = fmin(least, a[k]);
+  for (int k = 1; k < LANES; k++) least = a[k] < least ? a[k] : least;
   return least;
+}
+
+INLINE double largest_of(vec a)
+{
+  return -least_of(-a);
 }
 
 /* K and G of sd_sph_kernel.h for q <= 2. */

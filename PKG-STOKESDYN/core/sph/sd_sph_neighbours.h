@@ -24,10 +24,13 @@
 #define MASSES (many ? (vec) LANEWISE(MASS_OF, p) : mi)
 #define ROW_OF(i) (model->pair + (many ? (size_t) p->cls[i] * model->nclasses : 0))
 
-/* The next of `left` neighbours; the last ones are filled up with the far-away particle. */
-INLINE void next(const int *neighbor, int left, int mask, int filler, int j[LANES])
+/* The next of `left` neighbours; the last ones are filled up with the far-away particle. They stand in the
+ * list or, where that has not got them as they are, in room. */
+INLINE const int *next(const int *neighbor, int left, int mask, int filler, int room[LANES])
 {
-  for (int k = 0; k < LANES; k++) j[k] = k < left ? neighbor[k] & mask : filler;
+  if (left >= LANES && mask == ~0) return neighbor;
+  for (int k = 0; k < LANES; k++) room[k] = k < left ? neighbor[k] & mask : filler;
+  return room;
 }
 
 /* Of the next of `left` neighbours: those that are none of these fillers, as bits. */

@@ -10,7 +10,10 @@
 void sd_sph_pack_volumes(const sd_sph_model *model, const sd_sph_particles *p, const double *rho,
                          double *x4)
 {
-  for (int i = 0; i < p->n; i++) x4[4 * (size_t) i + 3] = sd_sph_mass(model, p, i) / rho[i];
+  for (int i = 0; i < p->n; i++) {
+    const double V = sd_sph_mass(model, p, i) / rho[i];
+    x4[4 * (size_t) i + 3] = p->phase && p->phase[i] < 0 ? -V : V;
+  }
   x4[4 * (size_t) p->n + 3] = 0.0;
 }
 
@@ -36,8 +39,10 @@ static sd_sph_symmetric inverse(const sd_sph_symmetric *M)
   const sd_sph_symmetric cofactor = sd_sph_cofactors(M);
   const double det = sd_sph_determinant(M, &cofactor);
   sd_sph_symmetric B = {{0.0}};
-  if (det > 1e-3)
-    for (int k = 0; k < 6; k++) B.a[k] = cofactor.a[k] / det;
+  if (det > 1e-3) {
+    const double scale = 1.0 / det;
+    for (int k = 0; k < 6; k++) B.a[k] = cofactor.a[k] * scale;
+  }
   return B;
 }
 
@@ -83,13 +88,14 @@ static double order_carry(const double *G, const sd_sph_symmetric *B, const doub
 }
 
 /* B of pliant shift, and its rate where it is not 1. */
-static void make_pliant(const double *sums, const sd_sph_symmetric *B, int inside, double *row, double *rate)
+static void make_pliant(const double *sums, const sd_sph_symmetric *B, int inside, double rho, double *row,
+                        double *rate)
 {
   static const sd_sph_symmetric UNIT = {{1.0, 1.0, 1.0, 0.0, 0.0, 0.0}};
   static const double rest[3] = {0.0, 0.0, 0.0};
   double unused[3];
-  memcpy(row + 8, inside ? B->a : UNIT.a, sizeof(UNIT.a));
-  if (inside) *rate = -row[3] * order_carry(sums + 14, B, rest, unused);
+  memcpy(row, inside ? B->a : UNIT.a, sizeof(UNIT.a));
+  if (inside) *rate = -rho * order_carry(sums + 14, B, rest, unused);
 }
 
 double sd_sph_shear_rate(int dimension, const double sums[SD_SPH_GRADIENTS])
@@ -110,7 +116,7 @@ double sd_sph_shear_rate(int dimension, const double sums[SD_SPH_GRADIENTS])
 int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_closing *c)
 {
   const sd_sph_level level = sd_sph_level_of(model);
-  const int from = sd_sph_sum_columns(level), to = sd_sph_columns(model);
+  const int from = sd_sph_sum_columns(level);
   int stops = -1;
   for (int i = 0; i < c->n; i++) {
     const double *sums = c->sums + (size_t) from * i;
@@ -118,13 +124,13 @@ int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_
     if (level == SD_SPH_RATE) continue;
 
     const sd_sph_symmetric M = moment(model->dimension, sums + 4), B = inverse(&M);
-    double *row = c->order + (size_t) to * i;
+    double *row = c->slope + 4 * (size_t) i;
     /* exact for a linear density: sum V_b (rho_b - rho_a) g d = M grad rho then */
     times(&B, sums + 1, row);
     row[3] = p->v4[4 * (size_t) i + 3];
     if (level == SD_SPH_GRADIENT) continue;
 
-    double *du = row + 4;
+    double *du = c->du + 4 * (size_t) i, *matrix = c->B ? c->B + 8 * (size_t) i : NULL;
     const int flows = (c->mask[i] & c->moving) && !(p->phase && p->phase[i] < 0);
     memset(du, 0, 4 * sizeof(double));
     /* what is corrected, and where its surface is, goes by all fluids */
@@ -135,16 +141,16 @@ int sd_sph_close(const sd_sph_model *model, const sd_sph_particles *p, const sd_
     if (inside || (flows && c->full))
       order_shift(model->dimension, sums, sd_sph_of_pair(model, p, i, i)->support, du);
     if (level >= SD_SPH_VELOCITY) {
-      memset(row + 8, 0, 8 * sizeof(double));
+      memset(matrix, 0, 8 * sizeof(double));
       memset(c->kick + 3 * (size_t) i, 0, 3 * sizeof(double));
-      row[14] = !flows;
+      matrix[6] = !flows;
     }
     if (model->scheme == SD_SPH_SHIFT_PLIANT)
-      make_pliant(sums, &B, inside, row, &c->rate[i]);
+      make_pliant(sums, &B, inside, row[3], matrix, &c->rate[i]);
     else if (level >= SD_SPH_VELOCITY) {
       if (!flows) continue;
       const sd_sph_symmetric all = level == SD_SPH_MIXTURE ? inverse(&whole) : B;
-      memcpy(row + 8, all.a, sizeof(all.a));
+      memcpy(matrix, all.a, sizeof(all.a));
       c->rate[i] = -row[3] * order_carry(sums + 14, &all, du, c->kick + 3 * (size_t) i);
     }
     /* the density that the particle finds where it is moved to */

@@ -7,7 +7,7 @@
 
 SD_BEGIN_C
 
-/* Fills the last column of x4 with V = m / rho, and that of row n with 0. */
+/* Fills the last column of x4 with V = m / rho, - V of a wall, and that of row n with 0. */
 void sd_sph_pack_volumes(const sd_sph_model *model, const sd_sph_particles *p, const double *rho,
                          double *x4);
 
@@ -24,12 +24,12 @@ typedef struct {
   int full;
   /* with `full`: whose smallest eigenvalue of M is below this is at a surface all the same */
   double least;
-  /* with shift: column 7 of order is 1 where a particle flows and the smallest eigenvalue of M is above this;
-   * 0: not asked for */
+  /* with shift: the last column of du is 1 where a particle flows and the smallest eigenvalue of M is above
+   * this; 0: not asked for */
   double whole;
-  /* out [n], [sd_sph_columns n], and with pliant shift and correction [3 n] the acceleration (G B) du,
+  /* out [n]; rows of sd_sph_particles; and with pliant shift and correction [3 n] the acceleration (G B) du,
    * which is that of correction alone */
-  double *rate, *order, *kick;
+  double *rate, *slope, *du, *B, *kick;
 } sd_sph_closing;
 
 /* rate    the sum; with correction, and pliant where du is not 0 by the rule below, - rho tr(G B).

@@ -111,7 +111,7 @@ typedef struct {
 /* Rows 0 .. n - 1 are particles (owned and ghosts), row n is the far-away one. */
 typedef struct {
   int n;
-  /* [4 (n+1)] x y z and: for forces A, with correction and volume P; for sums V */
+  /* [4 (n+1)] x y z and: for forces A, with correction and volume P; for sums V, of a wall - V */
   const double *x4;
   /* [4 (n+1)] vx vy vz rho */
   const double *v4;
@@ -125,9 +125,10 @@ typedef struct {
   /* [n+1] the viscosity of each particle, sd_sph_rheology.h; row n: > 0. NULL: that of pairs of
    * classes, mu of sd_sph_parameters, which is 1 otherwise */
   const double *mu;
-  /* [sd_sph_columns (n+1)] made by sd_sph_order.h: grad rho, rho | du, 0 | B xx yy zz xy | B xz yz,
-   * 1 for walls, 0. Only with delta, shift and correction, and B only with pliant and correction */
-  const double *order;
+  /* [4 (n+1)], [4 (n+1)], [8 (n+1)] made by sd_sph_order.h: with delta grad rho, rho; with shift and
+   * correction du and a number without meaning here; with pliant and correction B xx yy zz xy | xz yz, 1
+   * for walls, 0. Each in rows of its own: one loop reads one of them */
+  const double *slope, *du, *B;
 } sd_sph_particles;
 
 /* Fills rows 0 .. n: position + shift * (velocity + du), with v and du [3 n] or null. The last

@@ -49,8 +49,8 @@ static void add_moments(const sd_sph_model *model, const sd_sph_particles *p, co
       -two->pair->grad * sd_sph_G(model->kernel, sqrt(two->r2) * two->pair->inv_h);
   for (int c = 0; c < 6; c++) {
     const double dd = g * two->d[row[c]] * two->d[column[c]];
-    M[6 * (size_t) two->i + c] += p->x4[4 * (size_t) two->j + 3] * dd;
-    M[6 * (size_t) two->j + c] += p->x4[4 * (size_t) two->i + 3] * dd;
+    M[6 * (size_t) two->i + c] += fabs(p->x4[4 * (size_t) two->j + 3]) * dd;
+    M[6 * (size_t) two->j + c] += fabs(p->x4[4 * (size_t) two->i + 3]) * dd;
   }
 }
 

@@ -31,7 +31,7 @@ void sd_sph_gauge_add(sd_sph_kernel kernel, int dimension, double h, double acro
 double sd_sph_gauge_height(const sd_sph_stretch *at, const double *fraction);
 
 /* Adds to M [6 n + 6], rows xx yy zz xy xz yz of - sum V_b g d d^T, the unit matrix in the bulk. x4
- * holds V. */
+ * holds volumes as sd_sph_pack_volumes makes them. */
 void sd_sph_moments(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                     double *M);
 

@@ -21,22 +21,15 @@ int sd_sph_sum_columns(sd_sph_level level)
   return columns[level];
 }
 
-int sd_sph_columns(const sd_sph_model *model)
-{
-  static const int columns[] = {0, 4, 8, SD_SPH_MOST_COLUMNS, SD_SPH_MOST_COLUMNS};
-  return columns[sd_sph_level_of(model)];
-}
-
 static int filled_up(int count)
 {
   return (count + SD_SPH_LANES - 1) / SD_SPH_LANES * SD_SPH_LANES;
 }
 
-/* Each entry of the half list is there twice at most, and two parts of each particle are filled
- * up. */
+/* Each entry of the half list is there twice at most. */
 size_t sd_sph_both_size(const sd_sph_list *half, int n)
 {
-  size_t size = 2 * SD_SPH_LANES * (size_t) (n + 1);
+  size_t size = SD_SPH_LANES * (size_t) (n + 1);
   for (int k = 0; k < half->n; k++) size += 2 * (size_t) half->count[half->first[k]];
   return size;
 }
@@ -56,11 +49,11 @@ void sd_sph_both_ways(const sd_sph_list *half, int filler, int *pool, sd_sph_bot
     }
   }
   for (int i = 0; i < n; i++) {
-    const int own = filled_up(out->own[i]), all = own + filled_up(out->count[i]);
+    const int own = out->own[i], all = filled_up(own + out->count[i]);
     out->neighbor[i] = pool;
-    for (int m = 0; m < out->own[i]; m++) pool[m] = half->neighbor[i][m] & half->mask;
-    for (int m = out->own[i]; m < all; m++) pool[m] = filler;
-    out->own[i] = out->count[i] = own;    // the next free place of the second part
+    for (int m = 0; m < own; m++) pool[m] = half->neighbor[i][m] & half->mask;
+    for (int m = own + out->count[i]; m < all; m++) pool[m] = filler;
+    out->count[i] = own;    // the next free place of the second part
     pool += all;
   }
   for (int k = 0; k < half->n; k++) {

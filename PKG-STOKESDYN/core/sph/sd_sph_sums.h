@@ -29,13 +29,9 @@ sd_sph_level sd_sph_level_of(const sd_sph_model *model);
 int sd_sph_sum_columns(sd_sph_level level);
 enum { SD_SPH_MAXIMUM = 13 };
 
-/* Columns of a row of order: 4 with delta, 8 with shift, 16 with pliant shift and correction. */
-int sd_sph_columns(const sd_sph_model *model);
-enum { SD_SPH_MOST_COLUMNS = 16 };
-
 /* Neighbours both ways, each pair from both its sides: those of particle i < n are neighbor[i][0 ..
- * count[i] - 1], and the first own[i] of them are those that the half list gives to i. count, and
- * where the far-away particle fills them up own, are multiples of SD_SPH_LANES. */
+ * count[i] - 1], and the first own[i] of them are those that the half list gives to i. The far-away
+ * particle fills up count to a multiple of SD_SPH_LANES. */
 enum { SD_SPH_LANES = 8 };
 typedef struct {
   int n, **neighbor, *own, *count;
@@ -73,7 +69,7 @@ void sd_sph_middle(const sd_sph_model *model, const sd_sph_both *list, const sd_
 /* Adds delta-SPH, Antuono et al. 2010, to rate [list->n]: with psi_ab = 2 (rho_b - rho_a) d_ba /
  * r^2 - (grad rho_a + grad rho_b), d_ba = x_b - x_a,
  *   delta h c sum_b V_b psi_ab . grad_a W
- * The corrected gradients come from order; of two fluids, pairs of the same fluid only. */
+ * The corrected gradients come from slope; of two fluids, pairs of the same fluid only. */
 void sd_sph_diffusion(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
                       double *rate);
 

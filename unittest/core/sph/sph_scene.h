@@ -73,7 +73,7 @@ static inline void build(scene *s, sd_sph_kernel kernel, int dimension, int clas
   }
   s->rho[N] = 1.0;
   s->list = (sd_sph_list){N, (1 << 30) - 1, s->first, s->count, s->neighbor};
-  s->p = (sd_sph_particles){N, s->x4, s->v4, s->m, s->cls, 0.9, NULL, NULL, NULL};
+  s->p = (sd_sph_particles){.n = N, .x4 = s->x4, .v4 = s->v4, .m = s->m, .cls = s->cls, .mass = 0.9};
   sd_sph_pack_x(N, s->x, NULL, NULL, 0.0, s->x4);
   sd_sph_pack_pressures(&s->model, N, s->P, 0.0, s->rho, s->x4);
   sd_sph_pack_v(N, s->v, s->rho, s->v4);

@@ -262,13 +262,13 @@ static void rates_are_those_of_the_room_between_grains(void **state)
 {
   (void) state;
   const double phi[2] = {0.3, 0.0},
-               order[16] = {0.05, 0.3, -0.2, 1.1, 0.7, -0.3, 0.9, 0.0, 1, 1, 1, 1, 1, 1, 1, 0};
+               slope[8] = {0.05, 0.3, -0.2, 1.1, 1, 1, 1, 1}, du[8] = {0.7, -0.3, 0.9, 0.0, 1, 1, 1, 0};
   const double shifted = 0.05 * 0.7 - 0.3 * 0.3 - 0.2 * 0.9;
   double rate[2] = {2.0 + shifted, 5.0}, plain[2] = {2.0, 5.0};
-  sd_sph_grain_rates(2, phi, order, 8, 1, rate);
+  sd_sph_grain_rates(2, phi, slope, du, rate);
   CHECK_NEAR(rate[0], 2.0 / 0.7 + shifted, 1e-15);
   CHECK_NEAR(rate[1], 5.0, 0.0);
-  sd_sph_grain_rates(2, phi, NULL, 0, 0, plain);
+  sd_sph_grain_rates(2, phi, NULL, NULL, plain);
   CHECK_NEAR(plain[0], 2.0 / 0.7, 1e-15);
 }
 

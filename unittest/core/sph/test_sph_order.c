@@ -1,11 +1,12 @@
 /* Shift, correction, central friction and two fluids: what they are exact for, what they keep. */
 #include "sph_scene.h"
 
-enum { WIDE = 32, ROW = 16 };
+enum { WIDE = 32 };
 
 /* What a step computes for one scene, as the glue calls it. */
 typedef struct {
-  double sums[WIDE * (N + 1)], order[ROW * (N + 1)], rate[N + 1], kick[3 * N], f4[4 * (N + 1)];
+  double sums[WIDE * (N + 1)], slope[4 * (N + 1)], du[4 * (N + 1)], B[8 * (N + 1)], rate[N + 1], kick[3 * N],
+      f4[4 * (N + 1)];
   int stops;
 } step;
 
@@ -17,9 +18,12 @@ static void middle_of(scene *s, step *t, double least)
   sd_sph_pack_v(N, s->v, s->rho, s->v4);
   sd_sph_pack_volumes(&s->model, &s->p, s->rho, s->x4);
   sum_middle(s, t->sums);
-  const sd_sph_closing closing = {N, t->sums, flows, 1, sd_sph_corrects(&s->model), least, 0.0, t->rate, t->order, t->kick};
+  const sd_sph_closing closing = {N, t->sums, flows, 1, sd_sph_corrects(&s->model), least, 0.0, t->rate,
+                                  t->slope, t->du, t->B, t->kick};
   t->stops = sd_sph_close(&s->model, &s->p, &closing);
-  s->p.order = t->order;
+  s->p.slope = t->slope;
+  s->p.du = t->du;
+  s->p.B = t->B;
 }
 
 static void force_of(scene *s, step *t)
@@ -101,7 +105,7 @@ static void correction_is_exact_for_linear_fields(void **state)
         /* (G B) du for v = A x + a is A du. */
         for (int d = 0; d < dimension; d++) {
           double expected = 0.0;
-          for (int e = 0; e < dimension; e++) expected += GENERAL[3 * d + e] * t.order[16 * i + 4 + e];
+          for (int e = 0; e < dimension; e++) expected += GENERAL[3 * d + e] * t.du[4 * i + e];
           CHECK_NEAR(t.kick[3 * i + d], expected, 1e-10);
         }
       }
@@ -153,7 +157,7 @@ static void shift_is_the_law(void **state)
           push[c] += s.m[j] / s.rho[j] * (1.0 + 0.2 * pow(f, 4)) * g * d[c];
         if (r < 2.0 * k->h) U = fmax(U, fabs(vd) / r);
       }
-      const double R = 2.0 * s.types[3 * s.cls[i]].h, *du = t.order + 8 * i + 4;
+      const double R = 2.0 * s.types[3 * s.cls[i]].h, *du = t.du + 4 * i;
       for (int c = 0; c < 3; c++) length += 25.0 * R * R * push[c] * push[c];
       length = sqrt(length);
       CHECK_NEAR(t.sums[16 * i + SD_SPH_MAXIMUM], U, 1e-12 * U);
@@ -164,7 +168,7 @@ static void shift_is_the_law(void **state)
         CHECK_NEAR(du[c], -U * 5.0 * R * push[c] / fmax(length, 1.0), 1e-12 * U);
       /* The density goes along: rate = sum + du . grad rho. */
       CHECK_NEAR(t.rate[i] - t.sums[16 * i],
-                 du[0] * t.order[8 * i] + du[1] * t.order[8 * i + 1] + du[2] * t.order[8 * i + 2],
+                 du[0] * t.slope[4 * i] + du[1] * t.slope[4 * i + 1] + du[2] * t.slope[4 * i + 2],
                  1e-9 * fabs(t.rate[i]));
     }
     assert_true(moved > 2 && bounded > 0);
@@ -184,15 +188,12 @@ static void shift_sees_neither_drift_nor_rotation(void **state)
       for (int d = 0; d < dimension; d++) s.v[3 * i + d] += DRIFT[d];
     middle_of(&s, &t, 0.0);
     double largest = 0.0;
-    for (int k = 0; k < 8 * N; k++)
-      if (k % 8 > 3) largest = fmax(largest, fabs(still.order[k]));
+    for (int k = 0; k < 4 * N; k++) largest = fmax(largest, fabs(still.du[k]));
     assert_true(largest > 0.01);
-    for (int k = 0; k < 8 * N; k++)
-      if (k % 8 > 3) CHECK_NEAR(t.order[k], still.order[k], 1e-12 * largest);
+    for (int k = 0; k < 4 * N; k++) CHECK_NEAR(t.du[k], still.du[k], 1e-12 * largest);
     linear_velocity(&s, SPIN, NONE);
     middle_of(&s, &t, 0.0);
-    for (int k = 0; k < 8 * N; k++)
-      if (k % 8 > 3) CHECK_NEAR(t.order[k], 0.0, 1e-12);
+    for (int k = 0; k < 4 * N; k++) CHECK_NEAR(t.du[k], 0.0, 1e-12);
   }
 }
 
@@ -210,7 +211,7 @@ static void shift_leaves_walls_alone(void **state)
   for (int i = 0; i < N; i += 3) s.v[3 * i] += 5.0;    // walls that slide past
   middle_of(&s, &t, 0.0);
   for (int i = 0; i < N; i++) {
-    if (i % 3 == 0) assert_true(t.order[8 * i + 4] == 0.0 && t.order[8 * i + 5] == 0.0);
+    if (i % 3 == 0) assert_true(t.du[4 * i] == 0.0 && t.du[4 * i + 1] == 0.0);
     if (i % 3) CHECK_NEAR(t.sums[16 * i + SD_SPH_MAXIMUM], 0.0, 1e-12);
     if (i % 3 == 0) assert_true(t.sums[16 * i + SD_SPH_MAXIMUM] > 1.0);
   }
@@ -233,16 +234,16 @@ static void shift_is_off_at_an_interface(void **state)
   double others = 0.0, few = 0.0;
   for (int i = 0; i < N; i++)
     for (int d = 0; d < 2; d++) {
-      CHECK_NEAR(t.order[8 * i + 4 + d], one.order[8 * i + 4 + d], 1e-13);
-      if (i % 6 == 0) few = fmax(few, fabs(t.order[8 * i + 4 + d]));
+      CHECK_NEAR(t.du[4 * i + d], one.du[4 * i + d], 1e-13);
+      if (i % 6 == 0) few = fmax(few, fabs(t.du[4 * i + d]));
     }
   assert_true(few > 0.01);
   for (int i = 0; i < N; i++) s.phase[i] = i % 6 == 0;
   middle_of(&s, &t, 0.0);
   for (int i = 0; i < N; i++)
     for (int d = 0; d < 2; d++) {
-      if (i % 6 == 0) assert_true(t.order[8 * i + 4 + d] == 0.0);
-      if (i % 6) others = fmax(others, fabs(t.order[8 * i + 4 + d]));
+      if (i % 6 == 0) assert_true(t.du[4 * i + d] == 0.0);
+      if (i % 6) others = fmax(others, fabs(t.du[4 * i + d]));
     }
   assert_true(others > 0.01);
 }
@@ -315,7 +316,7 @@ static void corrected_friction(void **state)
         vd += d[c] * u[c];
       }
       static const int of[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-      const double *mine = t.order + 16 * a + 8, *other = s.phase[b] < 0 ? mine : t.order + 16 * b + 8;
+      const double *mine = t.B + 8 * a, *other = s.phase[b] < 0 ? mine : t.B + 8 * b;
       for (int c = 0; c < 3; c++)
         for (int e = 0; e < 3; e++)
           Bd += 0.5 * d[c] * d[e] * (mine[of[c][e]] + other[of[c][e]]);
@@ -415,7 +416,7 @@ static void two_fluids_with_correction(void **state)
       force_of(&s, &t);
       for (int i = 0; i < N; i++) {
         CHECK_NEAR(t.rate[i], -s.rho[i] * divergence, 1e-9);
-        const double *B = t.order + ROW * i + 8, V = mass(&s, i) / s.rho[i];
+        const double *B = t.B + 8 * i, V = mass(&s, i) / s.rho[i];
         const double rows[3][3] = {{B[0], B[3], B[4]}, {B[3], B[1], B[5]}, {B[4], B[5], B[2]}};
         double expected[3] = {0.0}, size = 0.0;
         for (int j = 0; j < N; j++) {

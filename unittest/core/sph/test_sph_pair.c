@@ -171,6 +171,28 @@ static void columns_by_the_book(const scene *s, int i, int columns, double *sums
   }
 }
 
+/* The half list of i has those behind it; those before it come second, with the filler. */
+static void first_are_those_of_the_half_list(int n, const neighbours *close)
+{
+  for (int i = 0; i < n; i++)
+    for (int m = 0; m < close->count[i]; m++) {
+      const int j = close->neighbor[i][m];
+      assert_true(m < close->own[i] ? i < j && j < N : j < i || j == N);
+    }
+}
+
+/* Nothing diffuses into fluid 0 from walls and from another fluid, whatever slopes these have. */
+static void only_the_same_fluid_diffuses(const sd_sph_loops *loops, const scene *s, const sd_sph_both *list,
+                                         double *slope, const double *known)
+{
+  double rate[N] = {0};
+  for (int k = 0; s->p.phase && k < 4 * N; k++)
+    if (s->phase[k / 4] != 0) slope[k] += 1.0;
+  loops->diffusion(&s->model, list, &s->p, rate);
+  for (int i = 0; i < list->n; i++)
+    if (s->phase[i] == 0) CHECK_NEAR(rate[i], known[i], 1e-13 * (1.0 + fabs(known[i])));
+}
+
 /* All columns of the middle of a step, of owned particles among ghosts; and the near pairs that come
  * with it diffuse as all pairs do. */
 static void every_column(const sd_sph_loops *loops)
@@ -202,11 +224,9 @@ static void every_column(const sd_sph_loops *loops)
         CHECK_NEAR(sums[columns * i + c], book[c], 1e-12 * (1e-3 + fabs(book[c])));
     }
 
-    double order[16 * (N + 1)] = {0}, all[N] = {0}, few[N] = {0};
-    const int rows = sd_sph_columns(&s.model);
-    for (int i = 0; i < N; i++)
-      for (int c = 0; c < 4; c++) order[rows * i + c] = random_number();
-    s.p.order = order;
+    double slope[4 * (N + 1)] = {0}, all[N] = {0}, few[N] = {0};
+    for (int k = 0; k < 4 * N; k++) slope[k] = random_number();
+    s.p.slope = slope;
     const sd_sph_both picked = {OWNED, close.neighbor, close.own, close.count};
     loops->diffusion(&s.model, &both, &s.p, all);
     loops->diffusion(&s.model, &picked, &s.p, few);
@@ -216,6 +236,8 @@ static void every_column(const sd_sph_loops *loops)
       total += around.count[i] - close.count[i];
     }
     assert_true(total > 0 && all[1] != 0.0);
+    first_are_those_of_the_half_list(OWNED, &close);
+    only_the_same_fluid_diffuses(loops, &s, &picked, slope, few);
   }
 }
 
@@ -345,19 +367,19 @@ static void linear_density_does_not_diffuse(void **state)
     }
     sd_sph_pack_v(N, s.v, s.rho, s.v4);
     sd_sph_pack_volumes(&s.model, &s.p, s.rho, s.x4);
-    double sums[12 * (N + 1)] = {0}, order[4 * (N + 1)] = {0}, rate[N + 1] = {0},
+    double sums[12 * (N + 1)] = {0}, found[4 * (N + 1)] = {0}, rate[N + 1] = {0},
                           curved[N + 1] = {0}, total = 0.0, largest = 0.0;
     sum_middle(&s, sums);
-    const sd_sph_closing closing = {N, sums, s.cls, 0, 0, 0.0, 0.0, rate, order, NULL};
+    const sd_sph_closing closing = {N, sums, s.cls, 0, 0, 0.0, 0.0, rate, found, NULL, NULL, NULL};
     assert_int_equal(sd_sph_close(&s.model, &s.p, &closing), -1);
     for (int i = 0; i < N; i++)
-      for (int d = 0; d < 3; d++) CHECK_NEAR(order[4 * i + d], slope[d], 1e-9);
-    s.p.order = order;
+      for (int d = 0; d < 3; d++) CHECK_NEAR(found[4 * i + d], slope[d], 1e-9);
+    s.p.slope = found;
     memset(rate, 0, sizeof(rate));
     diffuse(&s, rate);
     for (int i = 0; i < N; i++) CHECK_NEAR(rate[i], 0.0, 1e-9);
     /* A density with a bump spreads, and the volume integral of the rate is 0. */
-    order[4 * 4 + 3] += 20.0;
+    found[4 * 4 + 3] += 20.0;
     diffuse(&s, curved);
     assert_true(curved[4] < 0.0);
     for (int i = 0; i < N; i++) {

@@ -158,11 +158,11 @@ static void corrected_friction_of(const sd_sph_loops *loops)
   scene s;
   build(&s, SD_SPH_WENDLAND, 3, 1, 0, 0, SD_SPH_CENTRAL);
   s.model.scheme = SD_SPH_CORRECTION;
-  double order[16 * (N + 1)] = {0}, mu[N + 1], known[4 * (N + 1)] = {0}, f4[4 * (N + 1)] = {0};
+  double B[8 * (N + 1)] = {0}, mu[N + 1], known[4 * (N + 1)] = {0}, f4[4 * (N + 1)] = {0};
   for (int i = 0; i < N; i++)
-    for (int c = 0; c < 6; c++) order[16 * i + 8 + c] = (c < 3) + 0.1 * random_number();
+    for (int c = 0; c < 6; c++) B[8 * i + c] = (c < 3) + 0.1 * random_number();
   for (int i = 0; i <= N; i++) mu[i] = s.types[0].mu;
-  s.p.order = order;
+  s.p.B = B;
   neighbours around;
   const sd_sph_both both = both_ways(&s, &around, N);
   loops->slopes(&s.model, &both, &s.p, known, NULL);
