@@ -1,6 +1,6 @@
 /* Time of products by Ewald sums in units of T4, the product of all pairs of 10^4 spheres in the same run, with the error of the
  * answer beside it.
- *   bench_ewald [ROW ...]      rows: names of the table below; none: all but those of 10^6 */
+ *   bench_ewald [ROW ...]      rows: names of the table below; none: all but those of 10^6 and 10^7 */
 #define _POSIX_C_SOURCE 200809L
 #include "../core/stokes/ewald/periodic.h"
 #include "cpu.h"
@@ -32,6 +32,7 @@ static const row rows[] = {
     {"wall", 100000, 0, 3, 1.0, 0.2, 3e-7, 0, 1},
     {"small", 10000, 1, 3, 1.0, 0.2, 1e-3, 0},
     {"million", 1000000, 1, 3, 1.0, 0.2, 1e-3, 0},
+    {"ten-million", 10000000, 1, 3, 1.0, 0.2, 1e-3, 0},
     {"few-10", 100000, 1, 3, 10.0, 0.2, 1e-3, 100},
     {"few-10-6", 100000, 1, 3, 10.0, 0.2, 1e-6, 100},
     {"few-30", 100000, 1, 3, 30.0, 0.2, 1e-3, 4},
@@ -133,7 +134,7 @@ static void measure(const row *r)
       off += pow(u[r->width * i + d] - v[r->width * i + d], 2);
       all += pow(F[r->width * i + d] / (6 * SD_PI * a[i]), 2);
     }
-  printf("%-11s N %7d tolerance %.0e error %.1e: %6.2f T4 (%.4f s, T4 %.4f s); places %.4f s, tables %.2f s; range %.1f grid %d P %d; %.0f MB\n",
+  printf("%-11s N %8d tolerance %.0e error %.1e: %6.2f T4 (%.4f s, T4 %.4f s); places %.4f s, tables %.2f s; range %.1f grid %d P %d; %.0f MB\n",
          r->name, r->n, r->tolerance, sqrt(off / all), times[1] / T4, times[1], T4, times[0], times[2] - times[0], how.range,
          how.grid[0], how.points, usage.ru_maxrss / 1024.0);
   fflush(stdout);

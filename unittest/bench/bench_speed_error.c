@@ -5,8 +5,9 @@
  *   bench_speed_error N [FILE]
  * FILE: where the scene of open and periodic boxes goes, with its velocities, for other programs, as doubles
  *   N, edge of the cube, 3N places, 3N forces, 3N velocities in an open box (of some spheres), 3N in a periodic one
- * The viscosity is 1 and radii are 1. Open sums and lists are compared with their pairs, of some targets, one by one; periodic sums and slits with a product
- * that is far more accurate. Processor time on one core, the least of several products; placed: what new places cost. */
+ * The viscosity is 1 and radii are 1. Open sums and lists are compared with their pairs, of some targets, one by one;
+ * periodic sums and slits with a product that is far more accurate. Processor time on one core, the least of several
+ * products; placed: what new places cost. */
 #define _POSIX_C_SOURCE 200809L
 #include "../core/stokes/ewald/periodic.h"
 #include "../core/stokes/slab/slab.h"

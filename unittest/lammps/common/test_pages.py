@@ -1,5 +1,6 @@
 """The pages and the sources say the same: every message, every keyword and every style of the sources is on a page, and a page
 holds no message that no source has. Pages are read as a user searches them: by the first words of what LAMMPS has printed."""
+import csv
 import pathlib
 import re
 
@@ -217,6 +218,30 @@ def test_the_readme_is_short_and_the_other_texts_are_narrow():
     assert len((PACKAGE.parent / "README.md").read_text().splitlines()) < 120
     for path in (PACKAGE.parent / "README.md", PACKAGE / "README.md", PACKAGE / "CHANGELOG.md", PACKAGE.parent / "examples" / "README.md"):
         assert max(len(line) for line in path.read_text().splitlines()) <= 120, path
+
+
+COLUMNS_OF_PROGRAMS = [("1000", ["seconds"]), ("10000", ["seconds"]), ("100000", ["seconds"]), ("10000", ["placed", "seconds"])]
+
+
+def test_other_programs_take_as_long_as_the_readme_and_the_page_on_accuracy_say():
+    def times(row, *what):
+        return sum(float(row[name]) for name in what) / sum(float(row["ours_" + name]) for name in what)
+
+    def said(cell):
+        numbers = [float(number) for number in re.findall(r"[0-9.]+", cell)]
+        return [] if not numbers else pytest.approx([numbers[0], numbers[-1]], rel=0.06)
+
+    with open(PACKAGE.parent / "unittest" / "bench" / "peers.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    ratios = [times(row, "seconds") for row in rows]
+    readme = re.search(r"(\d+) to (\d+) times as long, at the same", (PACKAGE.parent / "README.md").read_text())
+    assert [min(ratios), max(ratios)] == pytest.approx([float(number) for number in readme.groups()], rel=0.15)
+    table = re.findall(r"^\| (H2Pack|PyStokes|RigidMultiblobsWall|FMM3D|JFSD)[^|]*\| (?:open|periodic) \|(.*)\|$", PAGES["howto_accuracy.md"], re.M)
+    assert len(table) == 5
+    for name, cells in table:
+        for cell, (n, what) in zip(cells.split("|"), COLUMNS_OF_PROGRAMS):
+            of = [times(row, *what) for row in rows if row["program"].lower().startswith(name.lower()) and row["spheres"] == n]
+            assert [min(of), max(of)] == said(cell) if of else not said(cell), (name, n, cell)
 
 
 # --- which LAMMPS commands go with ours -----------------------------------------------------------------------------------------

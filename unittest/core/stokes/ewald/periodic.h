@@ -80,7 +80,7 @@ static inline void periodic_images(periodic *p, const double *x, const double *a
     }
   }
   int shifts[3];
-  for (int d = 0; d < 3; d++) shifts[d] = (int) ceil(p->ewald.reach / width[d] + most[d] - least[d]);
+  for (int d = 0; d < 3; d++) shifts[d] = (int) floor(p->ewald.reach / width[d] + most[d] - least[d]);
   long room = p->n;
   for (int d = 0; d < 3; d++) room *= 2 * shifts[d] + 1;
   p->x = malloc(sizeof(double) * 3 * (size_t) room);
