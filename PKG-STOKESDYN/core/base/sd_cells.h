@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "sd_status.h"
+#include "sd_whole.h"
 
 SD_BEGIN_C
 
@@ -72,9 +73,7 @@ static inline sd_cell *sd_cells_slot(const sd_cells *c, int64_t i, int64_t j, in
 
 static inline int64_t sd_cells_along(const sd_cells *c, double x)
 {
-  const double q = x / c->side;
-  const int64_t k = (int64_t) q;
-  return k - (q < (double) k); /* floor(), which is a call on x86-64 */
+  return sd_whole_below(x / c->side);
 }
 
 static inline sd_cells_walk sd_cells_near(const sd_cells *c, const double *place, double radius)

@@ -1,5 +1,6 @@
 #include "sd_body_shape.h"
 
+#include "sd_dense_internal.h"
 #include "sd_linear.h"
 
 #include <math.h>
@@ -23,8 +24,7 @@ void sd_body_shape_answer(const sd_body_shape *s, const double *y, double *out)
     sd_mirrored_apply(s->mirrored, y, out);
     return;
   }
-  for (int j = 0; j < N; j++)
-    for (int i = 0; i < N; i++) out[i] += s->inverse[(long) j * N + i] * y[j];
+  SD_KERNELS_OF(sd_dense, plain, sd_isa_of(SD_ISA_BEST))->times(N, s->inverse, y, out);
 }
 
 /* rigid = inverse K of a dense inverse */

@@ -63,9 +63,10 @@ void sd_faces_read(const sd_faces *faces, int spheres, const double *u, double *
     const sd_faces_pattern *of = pattern_of(faces, i);
     const double *own = in_own_axes(faces, i, u, scratch);
     const int N = 3 * of->n;
-    double *to = v + WIDTH * (long) i;
-    for (int e = 0; e < WIDTH; e++)
-      for (int j = 0; j < N; j++) to[e] += of->G[(long) e * N + j] * own[j];
+    double *to = v + WIDTH * (long) i, sum[WIDTH] = {0.0};
+    for (int j = 0; j < N; j++) /* nine sums, none of which waits for the others */
+      for (int e = 0; e < WIDTH; e++) sum[e] += of->G[(long) e * N + j] * own[j];
+    memcpy(to, sum, sizeof sum);
     if (faces->turn) turn_all(faces->turn + 9 * (long) i, 1.0, to);
   }
 }
@@ -77,15 +78,17 @@ void sd_faces_push(const sd_faces *faces, int spheres, const double *f, double *
     const sd_faces_pattern *of = pattern_of(faces, i);
     const int N = 3 * of->n;
     double own[WIDTH], pushed[3 * SD_FACES_MOST], *to = l + rows_of(faces, i);
-    memset(pushed, 0, sizeof(double) * (size_t) N);
     memcpy(own, f + WIDTH * (long) i, sizeof own);
     const double *R = faces->turn ? faces->turn + 9 * (long) i : NULL;
     if (R) {
       const double back[9] = {R[0], R[3], R[6], R[1], R[4], R[7], R[2], R[5], R[8]};
       turn_all(back, 2.0, own);
     }
-    for (int e = 0; e < WIDTH; e++)
-      for (int j = 0; j < N; j++) pushed[j] += of->G[(long) e * N + j] * own[e];
+    for (int j = 0; j < N; j++) {
+      double sum = 0.0;
+      for (int e = 0; e < WIDTH; e++) sum += of->G[(long) e * N + j] * own[e];
+      pushed[j] = sum;
+    }
     for (int k = 0; k < of->n; k++) {
       double turned[3];
       if (R)

@@ -75,6 +75,7 @@ sd_status sd_films_create(int n, int one_body, const sd_two_sphere *exact, sd_fi
   if (n != 12 && n != 42) return SD_EOUTSIDE;
   out->exact = exact;
   out->half = NULL;
+  sd_two_sphere_nodes(GAPS, out->node, out->root);
   out->shells = sd_film_table[2 * (n == 42) + (one_body != 0)];
   read_equal(out);
   return SD_OK;
@@ -111,7 +112,7 @@ static sd_status film_of(const sd_films *films, const double (*shells)[SCALARS],
   sd_pair_resistance R;
   const sd_status status = sd_two_sphere_correction(films->exact, a1, a2, xi, 0.0, 1.0, &R);
   if (status != SD_OK) return status;
-  sd_two_sphere_weights(GAPS, node, w);
+  sd_two_sphere_weights_at(GAPS, films->node, films->root, node, w);
   for (int j = 0; j < GAPS; j++)
     for (int k = 0; k < SCALARS; k++) sums[k] += w[j] * shells[j][k];
   sd_film_scales(a1, a2, scale);

@@ -44,6 +44,8 @@ typedef struct {
 /* What films are read from, ready after create. It owns no memory. */
 typedef struct {
   const sd_two_sphere *exact;
+  /* nodes of the gaps (sd_two_sphere_nodes) */
+  double node[SD_FILM_GAPS], root[SD_FILM_GAPS];
   const double (*shells)[SD_FILM_GAPS][5];
   /* those of equal spheres, the commonest */
   double equal[SD_FILM_GAPS][5];

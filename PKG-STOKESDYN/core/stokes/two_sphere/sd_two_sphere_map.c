@@ -14,20 +14,34 @@ double sd_two_sphere_node(int n, int k)
   return 0.5 + 0.5 * cos(SD_PI * (k + 0.5) / n);
 }
 
-void sd_two_sphere_weights(int n, double t, double *w)
+void sd_two_sphere_nodes(int n, double *node, double *root)
+{
+  for (int k = 0; k < n; k++) {
+    node[k] = sd_two_sphere_node(n, k);
+    root[k] = sqrt(node[k] * (1.0 - node[k]));
+  }
+}
+
+void sd_two_sphere_weights_at(int n, const double *node, const double *root, double t, double *w)
 {
   double sum = 0.0;
   for (int k = 0; k < n; k++) {
-    const double d = t - sd_two_sphere_node(n, k);
+    const double d = t - node[k];
     if (d == 0.0) {
       memset(w, 0, sizeof(double) * (size_t) n);
       w[k] = 1.0;
       return;
     }
-    const double node = sd_two_sphere_node(n, k), s = sqrt(node * (1.0 - node));
-    sum += w[k] = (k % 2 ? -s : s) / d;
+    sum += w[k] = (k % 2 ? -root[k] : root[k]) / d;
   }
   for (int k = 0; k < n; k++) w[k] /= sum;
+}
+
+void sd_two_sphere_weights(int n, double t, double *w)
+{
+  double node[SD_TWO_SPHERE_GAPS], root[SD_TWO_SPHERE_GAPS];
+  sd_two_sphere_nodes(n, node, root);
+  sd_two_sphere_weights_at(n, node, root, t, w);
 }
 
 double sd_two_sphere_mu(double ratio, double xi)

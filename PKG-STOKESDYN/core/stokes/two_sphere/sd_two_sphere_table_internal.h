@@ -27,8 +27,13 @@ extern const double sd_two_sphere_table[SD_TWO_SPHERE_RATIOS][SD_TWO_SPHERE_GAPS
 /* Node 0 <= k < n of n in (0, 1), largest first */
 double sd_two_sphere_node(int n, int k);
 
-/* Weights [n] of the values at these nodes for that at t in [0, 1]: barycentric formula */
+/* Weights [n] of the values at these nodes for that at t in [0, 1]: barycentric formula; n is at most
+ * SD_TWO_SPHERE_GAPS */
 void sd_two_sphere_weights(int n, double t, double *w);
+
+/* The same where many t have the same nodes: node [n], root [n] of these, and the weights */
+void sd_two_sphere_nodes(int n, double *node, double *root);
+void sd_two_sphere_weights_at(int n, const double *node, const double *root, double t, double *w);
 
 /* mu of a gap; mu of SD_TWO_SPHERE_LARGEST_XI */
 double sd_two_sphere_mu(double ratio, double xi);

@@ -9,6 +9,7 @@
 #include "sd_constants.h"
 #include "sd_isa.h"
 #include "sd_real.h"
+#include "sd_whole.h"
 
 /* --- places --- */
 
@@ -16,8 +17,8 @@ static void put_place(const sd_ewald_pairs *p, real *row, const double *x)
 {
 #ifdef SD_SINGLE
   for (int d = 0; d < 3; d++) {
-    const double steps = floor(x[d] * sd_ewald_pairs_steps(p) + 0.5), turn = 0x1p32;
-    const uint32_t whole = (uint32_t) (steps - turn * floor(steps / turn));
+    const double steps = x[d] * sd_ewald_pairs_steps(p), turn = 0x1p32;
+    const uint32_t whole = (uint32_t) sd_whole_below(steps - turn * (double) sd_whole_below(steps / turn) + 0.5);
     memcpy(row + d, &whole, sizeof(whole));
   }
 #else

@@ -7,6 +7,7 @@
 #include "sd_constants.h"
 #include "sd_real.h"
 #include "sd_room.h"
+#include "sd_whole.h"
 
 /* Gradients of the grid's coordinates, and their products */
 static void metric(sd_ewald_waves *w)
@@ -151,8 +152,8 @@ static int find_places(sd_ewald_waves *w, const sd_spheres *spheres, int *brick)
       sound = sound && fabs(s[d]) < 1e9;
       if (!sound) break;
       if (i == 0) near[d] = box->periodic ? s[d] - period * floor(s[d] / period) : 0.0;
-      if (box->periodic) s[d] -= period * floor((s[d] - near[d]) / period + 0.5);
-      const double first = floor(s[d] - 0.5 * points);
+      if (box->periodic) s[d] -= period * (double) sd_whole_below((s[d] - near[d]) / period + 0.5);
+      const double first = (double) sd_whole_below(s[d] - 0.5 * points);
       p->at[d] = (int) first + 1;
       p->v[d] = 2.0 * (s[d] - 0.5 * points - first) - 1.0;
       if (!box->periodic) sound = sound && wv_inside(box, x[d], d);
