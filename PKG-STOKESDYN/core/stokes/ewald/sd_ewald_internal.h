@@ -9,6 +9,9 @@
 #include "sd_radial.h"
 #include "sd_window.h"
 
+/* Behind the rows: no force, and far from everything */
+enum { SD_EMPTY_ROWS = 16 };
+
 /* Near part: each pair once, for both its spheres; lengths scaled as in sd_packed. Sums times 8 pi
  * and without w of the sphere, its own D(0) not among them. */
 typedef struct {
@@ -19,18 +22,35 @@ typedef struct {
    * set */
   const long *first;
   const int *neighbor;
-  /* [8 (rows + 1)] x y z a, w F; the last takes the place of missing neighbours. [4 (rows + 1)] w T.
+  /* [8 (rows + SD_EMPTY_ROWS)] x y z a, w F; the first empty one takes the place of missing neighbours, and
+   * groups are read in whole vectors. [4 (rows + SD_EMPTY_ROWS)] w T.
    * Among floats x y z are whole numbers of 32 bits, times `unit`: a difference of two is taken
    * modulo 2^32, more than twice the range, and is exact wherever the pair is */
   const void *row, *torque_row;
   double unit;
-  /* [4 (rows + 1)] U, with torques [8 (rows + 1)] U, W, each and one number more; 0 before */
+  /* [4 (rows + SD_EMPTY_ROWS)] U, with torques [8 ..] U, W, each and one number more; 0 before */
   void *u;
   /* range^2, a_ref^2, and the polynomials of sd_radial.h times 8 pi; degree: one of the kernels' */
   double range2, ref2;
   int degree;
   double coefficient[SD_RADIALS][SD_RADIAL_TERMS];
 } sd_near_part;
+
+/* The same where points stand in groups that each fit into a vector: group k has the rows first[k] ...
+ * first[k + 1] - 1, and its pairs with groups are near[begin[k]] ... near[begin[k + 1] - 1], each pair once.
+ * Of a pair, the number of the other group, which may be this one; and a bit for each point of this group
+ * that may be within the range of one of the other. */
+typedef struct {
+  int other;
+  unsigned points;
+} sd_near_group;
+
+typedef struct {
+  int groups;
+  const int *first;
+  const long *begin;
+  const sd_near_group *near;
+} sd_near_groups;
 
 /* Degrees that there are kernels for: the polynomial is filled up with zeros. */
 #define SD_NEAR_DEGREES(_) _(6) _(8) _(11) _(14) _(17) _(20) _(24) _(29) _(39)
@@ -120,6 +140,8 @@ struct sd_ewald_kernels {
   /* of a number */
   size_t bytes;
   void (*near_part)(const sd_near_part *p);
+  /* forces alone, p->first and p->neighbor not read; NULL: vectors do not hold a group */
+  void (*near_groups)(const sd_near_part *p, const sd_near_groups *g);
   void (*spread)(const sd_spreading *s);
   void (*interpolate)(const sd_spreading *s);
   /* one row along z of the three transforms, u = B (f - k (k.f)/k^2): B [half], k [3] at its

@@ -5,6 +5,7 @@
 #include "sd_tensor_lanes.h"
 
 #include "sd_ewald_near_kernel.h"
+#include "sd_ewald_near_groups_kernel.h"
 #include "sd_ewald_spread_kernel.h"
 #ifndef SD_SINGLE
 #include "sd_ewald_own_kernel.h"
@@ -48,9 +49,9 @@ static void open_row(void *const *f, const void *table, double sign_x, double si
 
 #ifdef SD_SINGLE
 const struct sd_ewald_kernels SD_KERNELS(sd_ewald_single) = {
-    sizeof(real), near_part, spread, interpolate, periodic_row, open_row, NULL, NULL, NULL, NULL};
+    sizeof(real), near_part, NEAR_GROUPS, spread, interpolate, periodic_row, open_row, NULL, NULL, NULL, NULL};
 #else
 const struct sd_ewald_kernels SD_KERNELS(sd_ewald) = {
-    sizeof(real), near_part, spread, interpolate, periodic_row, open_row, search, own_block, image_part,
+    sizeof(real), near_part, NEAR_GROUPS, spread, interpolate, periodic_row, open_row, search, own_block, image_part,
     image_rows};
 #endif

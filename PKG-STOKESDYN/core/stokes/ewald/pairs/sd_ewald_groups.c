@@ -18,6 +18,8 @@ void sd_ewald_groups_free(sd_ewald_groups *g)
   free(g->first);
   free(g->near);
   free(g->range);
+  free(g->begin);
+  free(g->pair);
   free(g->sphere);
   free(g->form);
   free(g->block);
@@ -64,9 +66,9 @@ sd_status sd_ewald_groups_sort(sd_ewald_pairs *p, const sd_groups *groups, int n
       !sd_reserve(&g->first, sizeof(int), count + 1, &g->first_room))
     return SD_ENOMEMORY;
   double *points = g->middle + 3 * count;
-  const double farthest = find_middles(groups, &p->spheres, g->middle, points);
+  g->farthest = find_middles(groups, &p->spheres, g->middle, points);
   /* a hair more, so that rounding of the middles loses no pair */
-  const double reach = (p->ewald.range + 2.0 * farthest) * (1.0 + 1e-9);
+  const double reach = (p->ewald.range + 2.0 * g->farthest) * (1.0 + 1e-9);
   const sd_status status =
       sd_ewald_cells_sort(&g->cells, g->middle, points, groups->n, reach, points + count);
   if (status != SD_OK) return status;
@@ -90,7 +92,7 @@ typedef struct {
   sd_ewald_pairs *pairs;
   const sd_groups *groups;
   int n;
-  /* neighbours of all rows so far */
+  /* neighbours of all rows so far, or pairs of groups */
   long many;
 } finder;
 
@@ -122,19 +124,21 @@ static int ranges_of_points(finder *f, int row, int found)
   return many;
 }
 
-static sd_status visit_group(void *ctx, int row, int ranges, long most)
+/* Later groups near that of a row, of which there are `most` at most, to g->near, for which there is room */
+static int groups_found(finder *f, int row, int ranges)
 {
-  finder *f = ctx;
-  sd_ewald_pairs *p = f->pairs;
-  sd_ewald_groups *g = &p->groups;
+  sd_ewald_groups *g = &f->pairs->groups;
   sd_ewald_cells *c = &g->cells;
-  const size_t room = (size_t) most + SD_FULL;
-  if (!sd_reserve(&g->near, sizeof(int), room, &g->near_room) ||
-      !sd_reserve(&g->range, sizeof(int), 2 * room, &g->range_room))
-    return SD_ENOMEMORY;
   double x[3];
   sd_ewald_cells_at(c, row, x);
-  const int found = (int) p->doubles->search(c->centre, c->rows, c->range, ranges, x, c->reach * c->reach, g->near);
+  return (int) f->pairs->doubles->search(c->centre, c->rows, c->range, ranges, x, c->reach * c->reach, g->near);
+}
+
+/* Point by point */
+static sd_status list_points(finder *f, int row, int found)
+{
+  sd_ewald_pairs *p = f->pairs;
+  sd_ewald_groups *g = &p->groups;
   const int many = ranges_of_points(f, row, found);
   long points = SD_GROUP_POINTS;
   for (int k = 1; k < many; k++) points += g->range[2 * k + 1] - g->range[2 * k];
@@ -146,6 +150,55 @@ static sd_status visit_group(void *ctx, int row, int ranges, long most)
     f->many = sd_ewald_pairs_near(p, k, many, g->range, f->many);
   }
   return SD_OK;
+}
+
+/* A bit for each point of a group that is near enough to the middle of another to be near one of its points */
+static unsigned group_points_near(const sd_ewald_pairs *p, int row, int other)
+{
+  const sd_ewald_groups *g = &p->groups;
+  const double reach = (p->ewald.range + g->farthest) * (1.0 + 1e-9), *centre = sd_ewald_centres(p);
+  double x[3];
+  unsigned near = 0;
+  sd_ewald_cells_at(&g->cells, other, x);
+  for (int k = g->first[row]; k < g->first[row + 1]; k++) {
+    const double dx = centre[k] - x[0], dy = centre[p->rows + k] - x[1], dz = centre[2L * p->rows + k] - x[2];
+    near |= (unsigned) (dx * dx + dy * dy + dz * dz <= reach * reach) << (k - g->first[row]);
+  }
+  return near;
+}
+
+/* As a whole; its own points among each other too where they have no block */
+static sd_status list_groups(finder *f, int row, int found)
+{
+  sd_ewald_groups *g = &f->pairs->groups;
+  const int ghost = is_ghost(f, row), itself = !ghost && form_of(f, row) < 0;
+  if (!sd_extend(&g->pair, sizeof(*g->pair), (size_t) (f->many + found + 1), &g->pair_room)) return SD_ENOMEMORY;
+  g->begin[row] = f->many;
+  if (itself) g->pair[f->many++] = (sd_near_group){row, 0};
+  for (int k = 0; k < found; k++) {
+    if (ghost && is_ghost(f, g->near[k])) continue;
+    const unsigned points = group_points_near(f->pairs, row, g->near[k]);
+    if (points) g->pair[f->many++] = (sd_near_group){g->near[k], points};
+  }
+  return SD_OK;
+}
+
+static sd_status visit_group(void *ctx, int row, int ranges, long most)
+{
+  finder *f = ctx;
+  sd_ewald_groups *g = &f->pairs->groups;
+  const size_t room = (size_t) most + SD_FULL;
+  if (!sd_reserve(&g->near, sizeof(int), room, &g->near_room) ||
+      !sd_reserve(&g->range, sizeof(int), 2 * room, &g->range_room))
+    return SD_ENOMEMORY;
+  const int found = groups_found(f, row, ranges);
+  return f->pairs->by_groups ? list_groups(f, row, found) : list_points(f, row, found);
+}
+
+sd_near_groups sd_ewald_groups_near(const sd_ewald_pairs *p)
+{
+  const sd_ewald_groups *g = &p->groups;
+  return (sd_near_groups){g->cells.rows, g->first, g->begin, g->pair};
 }
 
 /* --- what the points of a group do to each other --- */
@@ -213,9 +266,12 @@ static sd_status make_blocks(finder *f)
 
 sd_status sd_ewald_groups_find(sd_ewald_pairs *p, const sd_groups *groups, int n)
 {
+  sd_ewald_groups *g = &p->groups;
   finder f = {.pairs = p, .groups = groups, .n = n};
-  const sd_status status = sd_ewald_cells_walk(&p->groups.cells, visit_group, &f);
-  p->first[p->rows] = f.many;
+  if (p->by_groups && !sd_reserve(&g->begin, sizeof(long), (size_t) g->cells.rows + 1, &g->begin_room))
+    return SD_ENOMEMORY;
+  const sd_status status = sd_ewald_cells_walk(&g->cells, visit_group, &f);
+  (p->by_groups ? g->begin : p->first)[p->by_groups ? g->cells.rows : p->rows] = f.many;
   return status == SD_OK ? make_blocks(&f) : status;
 }
 

@@ -19,6 +19,12 @@ typedef struct {
   /* [rows of cells + 1] first row of each; [..] groups near one; [2 ..] their rows */
   int *first, *near, *range;
   size_t middle_room, first_room, near_room, range_room;
+  /* how far a point is from its middle at most */
+  double farthest;
+  /* where kernels take whole groups: [rows of cells + 1] where the pairs of each begin, and these */
+  long *begin;
+  sd_near_group *pair;
+  size_t begin_room, pair_room;
   /* groups of ours that have a form: [own] first sphere, and which; [forms][3 SD_GROUP_POINTS]
    * [SD_GROUP_ROW] the blocks, for w = 1 */
   int own, *sphere, *form;
@@ -46,7 +52,9 @@ typedef struct sd_ewald_pairs {
   int equal;
   /* our own among them: [n] rows in order of cells */
   int n, *target;
-  /* each pair once, by the row that comes first, and no two ghosts: [rows + 1] neighbours of a row */
+  /* each pair once, by the row that comes first, and no two ghosts: [rows + 1] neighbours of a row; or by
+   * groups, and then not here */
+  int by_groups;
   long *first;
   int *neighbor;
   /* lists are filled up to a multiple of so many, whole vectors of every set */

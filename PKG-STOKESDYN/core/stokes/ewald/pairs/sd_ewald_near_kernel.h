@@ -71,22 +71,78 @@ static void near_polynomials_of(const sd_near_part *p, near_polynomials *c)
     for (int k = 0; k <= p->degree; k++) c->of[f][k] = (real) p->coefficient[f][k];
 }
 
-/* Forces. equal: all radii are a_ref, and two polynomials do; in floats the arithmetic of a pair is so short
- * that a branch costs more than the formulas on both its sides. */
+/* What the kernels of forces know of all pairs, and of the first sphere of one. c: its polynomials, those of
+ * all where radii are equal; G: its force */
+typedef struct {
+  vec unit, range2, twice, ref2;
+  alike of_all;
+} near_constants;
+
+typedef struct {
+  real x[3], G[3], a;
+  const real *c;
+} near_first;
+
+INLINE near_constants near_constants_of(const sd_near_part *p)
+{
+  return (near_constants){all((real) p->unit), all((real) p->range2), all((real) (2.0 / p->range2)),
+                          all((real) p->ref2), alike_of((real) sqrt(p->ref2))};
+}
+
+INLINE near_first near_first_of(const real *own, const real *c)
+{
+  return (near_first){{own[0], own[1], own[2]}, {own[4], own[5], own[6]}, own[3], c};
+}
+
+/* f, h of pairs with spheres whose rows are the columns `at`, d apart. equal: all radii are a_ref, and two
+ * polynomials do; in floats the arithmetic of a pair is so short that a branch costs more than the formulas
+ * on both its sides. ends: they are 0 beyond the range; without it all pairs are within */
+INLINE void near_radial(int equal, int ends, int degree, const near_constants *k, const near_first *i,
+                        const vec at[8], vec d[3], vec *f, vec *h)
+{
+  vec D[4];
+  for (int e = 0; e < 3; e++) d[e] = length_between(all(i->x[e]), at[e], k->unit);
+  const vec ai = all(i->a), aj = at[3], r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  const vec t = smaller(r2, k->range2) * k->twice - all(1.0);
+  if (equal && SINGLE)
+    block_alike(r2, &k->of_all, f, h);
+  else
+    block(r2, ai, aj, ai * ai + aj * aj, f, h);
+  horner(equal ? 2 : 4, degree, i->c, SD_RADIAL_TERMS, t, D);
+  if (equal) {
+    *f -= D[0];
+    *h -= D[1];
+  } else {
+    const vec b = (aj * aj - k->ref2) * all(1.0 / 6.0);
+    *f -= D[0] - b * D[2];
+    *h -= D[1] - b * D[3];
+  }
+  if (!ends) return;
+  *f = where(r2 <= k->range2, *f, all(0.0));
+  *h = where(r2 <= k->range2, *h, all(0.0));
+}
+
+/* u += what forces F do to one sphere, d from them to it */
+INLINE void near_add(vec f, vec h, const vec d[3], const vec F[3], vec u[3])
+{
+  const vec e = h * (d[0] * F[0] + d[1] * F[1] + d[2] * F[2]);
+  for (int c = 0; c < 3; c++) u[c] = (u[c] + f * F[c]) + e * d[c];
+}
+
+INLINE void near_all_forces(const near_first *i, vec G[3])
+{
+  for (int c = 0; c < 3; c++) G[c] = all(i->G[c]);
+}
+
 INLINE void near_forces(int equal, int degree, const sd_near_part *p)
 {
   const real *rows = p->row;
   real *sums = p->u;
   near_polynomials shared;
   near_polynomials_of(p, &shared);
-  const vec unit = all((real) p->unit), range2 = all((real) p->range2), twice = all((real) (2.0 / p->range2));
-  const vec one = all(1.0), ref2 = all((real) p->ref2);
-  const vec sixth = all(1.0 / 6.0);
-  const alike of_all = alike_of((real) sqrt(p->ref2));
+  const near_constants all_pairs = near_constants_of(p);
   for (int i = 0; i < p->rows; i++) {
     const real *own = rows + 8 * (long) i;
-    const vec x = all(own[0]), y = all(own[1]), z = all(own[2]), a = all(own[3]);
-    const vec G0 = all(own[4]), G1 = all(own[5]), G2 = all(own[6]), a2 = a * a;
     const long end = p->first[i + 1];
     real mine[4 * SD_RADIAL_TERMS];
     const real *c = shared.of[0];
@@ -94,39 +150,20 @@ INLINE void near_forces(int equal, int degree, const sd_near_part *p)
       polynomials_of_target(p, ((double) own[3] * own[3] - p->ref2) / 6.0, degree, mine);
       c = mine;
     }
-    vec u0 = all(0.0), u1 = u0, u2 = u0;
+    const near_first first = near_first_of(own, c);
+    vec u[3] = {all(0.0), all(0.0), all(0.0)}, G[3];
+    near_all_forces(&first, G);
     for (long k = p->first[i]; k < end; k += LANES) {
       const int *j = p->neighbor + k;
-      vec at[8], *F = at + 4, f, h, D[4];
+      vec at[8], f, h, d[3];
       gather_eight(rows, j, at);
-      const vec dx = length_between(x, at[0], unit), dy = length_between(y, at[1], unit);
-      const vec dz = length_between(z, at[2], unit), aj = at[3];
-      const vec r2 = dx * dx + dy * dy + dz * dz, t = smaller(r2, range2) * twice - one;
-      if (equal && SINGLE)
-        block_alike(r2, &of_all, &f, &h);
-      else
-        block(r2, a, aj, a2 + aj * aj, &f, &h);
-      horner(equal ? 2 : 4, degree, c, SD_RADIAL_TERMS, t, D);
-      if (equal) {
-        f -= D[0];
-        h -= D[1];
-      } else {
-        const vec b = (aj * aj - ref2) * sixth;
-        f -= D[0] - b * D[2];
-        h -= D[1] - b * D[3];
-      }
-      const vec e = h * (dx * F[0] + dy * F[1] + dz * F[2]);
-      const vec g = h * (dx * G0 + dy * G1 + dz * G2);
-      u0 = (u0 + f * F[0]) + e * dx;
-      u1 = (u1 + f * F[1]) + e * dy;
-      u2 = (u2 + f * F[2]) + e * dz;
-      vec v[4] = {f * G0 + g * dx, f * G1 + g * dy, f * G2 + g * dz, all(0.0)};
+      near_radial(equal, 0, degree, &all_pairs, &first, at, d, &f, &h);
+      near_add(f, h, d, at + 4, u);
+      const vec g = h * (d[0] * G[0] + d[1] * G[1] + d[2] * G[2]);
+      vec v[4] = {f * G[0] + g * d[0], f * G[1] + g * d[1], f * G[2] + g * d[2], all(0.0)};
       add_to_rows(sums, 4, j, v);
     }
-    real *u = sums + 4 * (long) i;
-    u[0] += total(u0);
-    u[1] += total(u1);
-    u[2] += total(u2);
+    for (int d = 0; d < 3; d++) sums[4 * (long) i + d] += total(u[d]);
   }
 }
 

@@ -46,14 +46,13 @@ static size_t numbers_of_sum(const sd_ewald_pairs *p)
 /* The last centres are read in whole vectors. */
 static int ep_make_room(sd_ewald_pairs *p, int n)
 {
-  const size_t rows = (size_t) n + 1, all = (numbers_of_sum(p) + (size_t) p->width) * p->bytes;
+  const size_t rows = (size_t) n + SD_EMPTY_ROWS, all = (numbers_of_sum(p) + (size_t) p->width) * p->bytes;
   const size_t centre = 3 * sizeof(double), in_rows = 8 * p->bytes * rows;
   const size_t turns = p->width == 6 ? 4 * p->bytes * rows : 0;
   const size_t in_u = (all > centre ? all : centre) * rows + SD_FULL * sizeof(double);
   p->row = sd_reserve_lines(&p->memory, (in_rows + turns + in_u) / sizeof(double) + 1, &p->room);
   if (!p->row || !sd_reserve(&p->sphere, sizeof(int), rows, &p->sphere_room) ||
-      !sd_reserve(&p->target, sizeof(int), rows, &p->target_room) ||
-      !sd_reserve(&p->first, sizeof(long), rows, &p->first_room))
+      !sd_reserve(&p->target, sizeof(int), rows, &p->target_room))
     return 0;
   p->torque_row = turns > 0 ? (char *) p->row + in_rows : NULL;
   p->u = (char *) p->row + in_rows + turns;
@@ -131,6 +130,9 @@ sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, const sd_
   if (status != SD_OK) return status;
   pairs_fill_rows(p);
   p->groups.own = 0;
+  p->by_groups = grouped && p->kernels->near_groups;
+  if (!p->by_groups && !sd_reserve(&p->first, sizeof(long), (size_t) p->rows + 1, &p->first_room))
+    return SD_ENOMEMORY;
   if (grouped) return sd_ewald_groups_find(p, groups, n);
   finder f = {p, n, 0};
   const sd_status found = sd_ewald_cells_walk(&p->cells, visit_sphere, &f);
@@ -168,8 +170,12 @@ sd_status sd_ewald_pairs_load(sd_ewald_pairs *p, int n, const double *F, const d
 void sd_ewald_pairs_apply(sd_ewald_pairs *p)
 {
   const sd_near_part k = sd_ewald_pairs_part(p);
-  memset(p->u, 0, p->bytes * numbers_of_sum(p) * ((size_t) p->rows + 1));
-  p->kernels->near_part(&k);
+  memset(p->u, 0, p->bytes * numbers_of_sum(p) * ((size_t) p->rows + SD_EMPTY_ROWS));
+  if (p->by_groups) {
+    const sd_near_groups groups = sd_ewald_groups_near(p);
+    p->kernels->near_groups(&k, &groups);
+  } else
+    p->kernels->near_part(&k);
 }
 
 void *sd_ewald_pairs_rows(sd_ewald_pairs *p)

@@ -35,8 +35,8 @@ static void rows_stand(sd_ewald_pairs *p)
     row[8 * k + 3] = (real) (p->spheres.a[i] * p->scale);
     row[8 * k + 7] = (real) p->spheres.w[i];
   }
-  for (long d = 0; d < 8; d++) row[8L * p->rows + d] = (real) (d < 3 ? SD_NOWHERE : 0.0);
-  for (long d = 0; d < 4 && turn; d++) turn[4L * p->rows + d] = 0;
+  for (long d = 0; d < 8 * SD_EMPTY_ROWS; d++) row[8L * p->rows + d] = (real) (d % 8 < 3 ? SD_NOWHERE : 0.0);
+  for (long d = 0; d < 4 * SD_EMPTY_ROWS && turn; d++) turn[4L * p->rows + d] = 0;
 }
 
 /* --- forces --- */

@@ -87,7 +87,6 @@ static void any_groups_will_do(void **state)
   for (int i = 0; i < ALL; i++) c.form[i] = -1;
   for (int i = 0; i < N_ALL; i += 5) c.a[i] = 0.0;
   for (int i = 24; i < 48; i++) c.a[i] = 0.0;
-  check(&c, &(sd_groups){ALL, c.first, c.form}, SD_ISA_PLAIN);
   int first[N_ALL + 1], n = 0;
   for (int at = 0, size = 1; at < N_ALL; at += size, size = size % 12 + 1) {
     const int end = at < N ? N : N_ALL;
@@ -95,11 +94,15 @@ static void any_groups_will_do(void **state)
     if (at + size > end) size = end - at;
   }
   first[n] = N_ALL;
-  check(&c, &(sd_groups){n, first, NULL}, SD_ISA_PLAIN);
   int two[ALL + 1] = {0};
   for (int k = 0; k < ALL; k++) two[k] = k == 0 ? 0 : c.first[k + 1];
   two[ALL - 1] = N_ALL;
-  check(&c, &(sd_groups){ALL - 1, two, NULL}, SD_ISA_PLAIN);
+  for (int k = 0; k < 4; k++) {
+    if (!sd_isa_supported(sets[k])) continue;
+    check(&c, &(sd_groups){ALL, c.first, c.form}, sets[k]);
+    check(&c, &(sd_groups){n, first, NULL}, sets[k]);
+    check(&c, &(sd_groups){ALL - 1, two, NULL}, sets[k]);
+  }
 }
 
 /* A form is one block: the near part is as symmetric as before. */
