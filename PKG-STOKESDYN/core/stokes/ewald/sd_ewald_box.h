@@ -38,8 +38,8 @@ double sd_ewald_narrowest(const sd_ewald_box *b);
 int sd_ewald_box_around(sd_ewald_box *box, int still, const double *lo, const double *hi,
                         double largest);
 
-/* The next even number whose only prime factors are 2, 3, 5 and 7: fast to transform. (A line of 126 = 2 63,
- * of an open box with 63 points, takes three times as long as one of 128.) */
+/* The next even number whose only prime factors are 2, 3, 5 and 7, and that has neither 63 nor 81 among its
+ * factors: fast to transform. */
 int sd_ewald_transformable(double at_least);
 
 SD_END_C

@@ -114,6 +114,14 @@ static void waves_that_end_at_a_band_need_half_the_grid(void **state)
   }
 }
 
+/* FFTW is slow with lines of 126 and of 162 points. */
+static void grids_are_fast_to_transform(void **state)
+{
+  (void) state;
+  const int asked[] = {90, 125, 126, 161, 250, 377}, got[] = {90, 128, 128, 168, 250, 384};
+  for (int k = 0; k < 6; k++) assert_int_equal(sd_ewald_transformable(asked[k]), got[k]);
+}
+
 /* Equal spheres with torques, thin and dense: velocities are right to the tolerance over F/(6 pi a), spins over T/(8 pi a^3), and
  * neither rule nor window is much better than asked. */
 static void torques_are_no_better_than_asked(void **state)
@@ -171,6 +179,7 @@ int main(void)
       cmocka_unit_test(the_predicted_error_is_the_measured_one),
       cmocka_unit_test(waves_that_end_at_a_band_have_the_sum_of_a_gaussian),
       cmocka_unit_test(waves_that_end_at_a_band_need_half_the_grid),
+      cmocka_unit_test(grids_are_fast_to_transform),
       cmocka_unit_test(torques_are_no_better_than_asked),
       cmocka_unit_test(equal_forces_are_no_worse),
   };
