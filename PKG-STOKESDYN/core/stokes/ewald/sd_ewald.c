@@ -74,6 +74,9 @@ static double range_in_gap(const sd_ewald_box *box, const splitting *by, double 
   return fmax(range, fmax(y * by->spheres.largest / by->most, 2.0 * by->spheres.largest));
 }
 
+/* Part of the tolerance that may be the error of the common flow */
+static const double COMMON = 0.62;
+
 /* xi, a_ref, range, the window, and the largest spacing of the grid. What is lost tightens the tolerance,
  * which in turn moves xi. */
 static void split(sd_ewald *e, const splitting *by, double *y)
@@ -89,7 +92,9 @@ static void split(sd_ewald *e, const splitting *by, double *y)
     if (k < 5) t = sd_splitting_tightened(by, e->tolerance, e->xi * *y);
   }
   e->points = sd_splitting_points_of(by, e->tolerance, e->xi * *y, t) + by->tall;
-  e->beta = sd_splitting_beta(by) * e->points;
+  e->beta = sd_splitting_beta(e, by) * e->points;
+  while (by->fall == BAND && e->points < SD_EWALD_MOST_POINTS && sd_splitting_common_flow(e) > COMMON * e->tolerance)
+    e->beta = sd_splitting_beta(e, by) * ++e->points;
   e->reach = e->range;
   e->spacing = sd_splitting_spacing(e, by, t, *y);
 }

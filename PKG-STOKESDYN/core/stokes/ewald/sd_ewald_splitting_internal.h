@@ -42,6 +42,10 @@ double sd_splitting_gaussian_spacing(double xi, double y);
 /* The window: its points, and beta over these */
 int sd_splitting_points(double t);
 int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, double t);
-double sd_splitting_beta(const splitting *by);
+double sd_splitting_beta(const sd_ewald *e, const splitting *by);
+
+/* What this window mistakes of the flow that all spheres of an open box have in common under random
+ * forces, over F/(6 pi eta a): it grows as N^(1/6). 0 in a periodic box, which has no such flow */
+double sd_splitting_common_flow(const sd_ewald *e);
 
 #endif

@@ -209,6 +209,52 @@ static void waves_end_at_a_band(void **state)
   assert_true(how.band == 0.0);
 }
 
+/* Random forces move all spheres of an open box together, the faster the more there are. A window of 8 points mistook that
+ * by the whole tolerance at 10^5 spheres and 1e-6; at 1e-3 a narrower window of 5 points does up to 10^6. */
+static void common_flow_takes_wider_windows(void **state)
+{
+  (void) state;
+  const double count[] = {2e4, 1e5, 1e6, 1e7}, tolerance[] = {1e-6, 1e-6, 1e-3, 1e-3};
+  const int points[] = {8, 9, 5, 6};
+  for (int k = 0; k < 4; k++) {
+    const double n = count[k], edge = cbrt(n * 4.0 / 3.0 * SD_PI / 0.2);
+    sd_ewald_box box = {.edge = {edge, edge, edge}};
+    const sd_ewald_sizes sizes = {.all = {n, n, n, 1.0}};
+    sd_ewald how;
+    assert_int_equal(sd_ewald_choose(&box, &sizes, 3, tolerance[k], &how), SD_OK);
+    assert_int_equal(how.points, points[k]);
+    box.periodic = 1; /* and has no such flow */
+    assert_int_equal(sd_ewald_choose(&box, &sizes, 3, tolerance[k], &how), SD_OK);
+    assert_int_equal(how.points, k < 2 ? 8 : 5);
+  }
+}
+
+/* Relative to the flow that equal forces make a sum to 1e-3 is right to 4e-5. A window whose error of a constant flow is larger
+ * has twice that. */
+static void equal_forces_make_no_larger_error(void **state)
+{
+  (void) state;
+  enum { M = 1500 };
+  static double x[3 * M], a[M], F[3 * M], u[2][3 * M];
+  const double edge = cbrt(M * 4.0 / 3.0 * SD_PI / 0.2);
+  const sd_ewald_box box = {.edge = {edge, edge, edge}};
+  uint64_t seed = 5;
+  double off = 0.0, flow = 0.0;
+  for (int i = 0; i < 3 * M; i++) x[i] = uniform(&seed, 0, edge), F[i] = 1.0;
+  for (int i = 0; i < M; i++) a[i] = 1.0;
+  for (int tight = 0; tight < 2; tight++) {
+    const sd_ewald how = periodic_choose(&box, a, M, 3, tight ? 1e-6 : 1e-3);
+    periodic p = {.n = M, .n_all = M, .width = 3, .ewald = how};
+    const sd_mobility_scene s = {.how = {.width = 3, .ewald = &p.ewald}, .n = M, .n_all = M, .spheres = {x, a, a}};
+    assert_int_equal(sd_mobility_place(&p.omega, &sd_mobility_ewald, &s), SD_OK);
+    assert_int_equal(sd_mobility_apply(&p.omega, F, u[tight]), SD_OK);
+    sd_mobility_free(&p.omega);
+  }
+  for (int i = 0; i < 3 * M; i++) off += pow(u[0][i] - u[1][i], 2), flow += pow(u[1][i], 2);
+  if (getenv("STOKESDYN_SHOW")) printf("%.2e of the flow\n", sqrt(off / flow));
+  assert_true(sqrt(off / flow) < 5e-5);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -218,6 +264,8 @@ int main(void)
       cmocka_unit_test(a_box_above_a_wall_goes_along_it_alone),
       cmocka_unit_test(few_spheres_cost_more_than_all_pairs),
       cmocka_unit_test(waves_end_at_a_band),
+      cmocka_unit_test(common_flow_takes_wider_windows),
+      cmocka_unit_test(equal_forces_make_no_larger_error),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

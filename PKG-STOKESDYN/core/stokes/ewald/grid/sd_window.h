@@ -7,7 +7,7 @@
 #ifndef SD_WINDOW_H
 #define SD_WINDOW_H
 
-#include "sd_ewald.h"
+#include "sd_ewald_chosen.h"
 
 SD_BEGIN_C
 
