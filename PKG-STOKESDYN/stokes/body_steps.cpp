@@ -16,12 +16,6 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-void BodySteps::keep_in_plane(double *V, size_t width) const
-{
-  if (domain->dimension == 3) return;
-  for (size_t d = 2; d < std::min(width, (size_t) 5); d++) V[d] = 0.0;
-}
-
 void BodySteps::note(int i, const double *step)
 {
   displaced = std::max(displaced, sd_dot(step, step) / (atom->radius[i] * atom->radius[i]));
@@ -58,7 +52,7 @@ void BodySteps::step_clump(const ClumpPoses &poses, const Clumps &from, size_t c
   x.resize(3 * (size_t) body.n);
   sd_pose_step(pose, goes.centre, goes.move, body.n, body.shape->shape.x, row + TURN, x.data());
   if (goes.place) copy<3>(pose + 9, goes.place);
-  copy<4>(rows[body.atom] + quaternion, row + TURNED);
+  copy<4>(turned[body.atom], row + TURNED);
   sd_turn_quaternion(row + TURN, row + TURNED);
   for (int k = 0; k < body.n; k++) {
     const size_t m = poses.member_of(clump, k);
@@ -76,6 +70,7 @@ void BodySteps::step_clump(const ClumpPoses &poses, const Clumps &from, size_t c
 void BodySteps::step_clumps(Hydrodynamics &hydro, const Clumps &from, const Step &step, Extent extent)
 {
   const Lattice now = Lattice::of(domain);
+  const bool directed = directions.on(), flat = domain->dimension == 2;
   std::vector<double> x;
   double box[6];
   for (int d = 0; d < 6; d++) box[d] = from.h[d] - now.h[d];
@@ -86,12 +81,12 @@ void BodySteps::step_clumps(Hydrodynamics &hydro, const Clumps &from, const Step
   };
   hydro.scene.whole.scatter(COLUMNS, all, [&](int i, const double *row) {
     double *x_of = atom_row(atom->x, i);
-    for (int d = 0; d < domain->dimension; d++) x_of[d] += row[STEP + d];
-    directions.turn(i, row + TURN);
+    for (int d = 0; d < (flat ? 2 : 3); d++) x_of[d] += row[STEP + d];
+    if (directed) directions.turn(i, row + TURN);
     if (extent == PART) return;
     note(i, row + STEP);
     hydro.turn(i, row + TURN);
-    copy<4>(row + TURNED, rows.writable(i) + quaternion);
+    copy<4>(row + TURNED, turned.writable(i));
   });
 }
 
@@ -112,7 +107,7 @@ void BodySteps::follow_moved(const Hydrodynamics &hydro)
     double w[3], R[9];
     for (int d = 0; d < 3; d++) w[d] = update->dt * atom->omega[i][d];
     sd_rotation(w, R);
-    sd_turn_quaternion(R, rows.writable(i) + quaternion);
+    sd_turn_quaternion(R, turned.writable(i));
   }
 }
 
@@ -152,7 +147,7 @@ void BodySteps::go(Hydrodynamics &hydro, const StepWithBox &with_box, const Plac
   const auto moved = [&](bool stays, const double *v, const double *at, const double *from, double move[6]) {
     for (int d = 0; d < 6; d++) move[d] = with_box.t * v[d];
     if (!stays) with_box.displacement(v, at, from, move);
-    keep_in_plane(move, 6);
+    keep_in_plane(move);
   };
   return_to_start();
   for (size_t i : began.lone) {

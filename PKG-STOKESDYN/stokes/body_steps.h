@@ -9,6 +9,8 @@
 #include "hydrodynamics.h"
 #include "rows_fix.h"
 
+#include "domain.h"
+
 #include <functional>
 #include <vector>
 
@@ -21,17 +23,18 @@ struct Places {
 
 class BodySteps : protected LAMMPS_NS::Pointers {
  public:
-  /* Columns from `quaternion` on of `rows`: by which the clump of a sphere has turned since the fix was
-   * given */
-  BodySteps(LAMMPS_NS::LAMMPS *lmp, const Drives &drives, Directions &directions, AtomArray &rows,
-            int quaternion) :
-      Pointers(lmp), drives(drives), directions(directions), rows(rows), quaternion(quaternion)
+  /* turned [4]: the quaternion by which the clump of a sphere has turned since the fix was given */
+  BodySteps(LAMMPS_NS::LAMMPS *lmp, const Drives &drives, Directions &directions, AtomArray &turned) :
+      Pointers(lmp), drives(drives), directions(directions), turned(turned)
   {
   }
 
-  /* In two dimensions nobody leaves the plane, or turns but about its normal. V: velocity, with width 6
-   * angular velocity; or a move. */
-  void keep_in_plane(double *V, size_t width) const;
+  /* In two dimensions nobody leaves the plane, or turns but about its normal. V: velocity and angular
+   * velocity; or a move. */
+  void keep_in_plane(double V[6]) const
+  {
+    for (int d = 2; d < 5 && domain->dimension == 2; d++) V[d] = 0.0;
+  }
 
   /* Is there anything but clumps that turns? Then what a solve has found of atom i: its angular velocity, and
    * that again, nullptr: it has no direction */
@@ -86,8 +89,7 @@ class BodySteps : protected LAMMPS_NS::Pointers {
  private:
   const Drives &drives;
   Directions &directions;
-  AtomArray &rows;
-  const int quaternion;
+  AtomArray &turned;
   double displaced = 0.0;
 
   Start began;

@@ -105,6 +105,7 @@ void ClumpPoses::find()
 
 void ClumpPoses::find_lone()
 {
+  if (!lone_found.first_in(scene.all_epochs().selection)) return;
   all_lone.clear();
   const auto free = [this](int i) {
     return !rigid.settings.on || atom->molecule[i] == 0;
@@ -187,8 +188,9 @@ void ClumpPoses::velocities(int width, const ToAtom &take)
     take(i, move, by_fluid);
   }
   if (!rigid.settings.on) return;
-  std::vector<double> v, force, torque;
-  double back[6] = {0.0}, row[12] = {0.0};
+  enum { ROW = 12 };    // velocity, angular velocity, force, torque
+  std::vector<double> rows;
+  double back[6] = {0.0};
   for (int d = 0; d < 6 && ambient.jumps(); d++) back[d] = -ambient.jumps()[d];
   const auto all = [&](const auto &give) {
     for (Clump &clump : all_clumps) {
@@ -198,53 +200,44 @@ void ClumpPoses::velocities(int width, const ToAtom &take)
       double arm[3], on_clump[6] = {0.0};
       sd_minus(&spheres.x[at], clump.pose + 9, arm);
       sd_clump_add_load(arm, &loads[6 * (size_t) clump.number], on_clump);
-      v.resize(6 * n);
-      force.resize(3 * n);
-      torque.resize(width == 6 ? 3 * n : 0);
+      rows.resize(ROW * n);
       sd_clump_move_alone(&is.shape, &is.clump, &motion, clump.pose, clump.eta, on_clump,
-                          clump.known == SD_BODY_HELD, clump.V, v.data(), force.data(),
-                          width == 6 ? torque.data() : nullptr);
+                      clump.known == SD_BODY_HELD, clump.V, ROW, rows.data(), &rows[6],
+                      width == 6 ? &rows[9] : nullptr);
       for (size_t k = 0; k < n; k++) {
         const size_t m = member_of(clump, (int) k);
-        copy<6>(&v[6 * k], row);
-        copy<3>(&force[3 * k], row + 6);
-        if (width == 6) copy<3>(&torque[3 * k], row + 9);
-        if (ambient.jumps()) sd_add_edges(back, &scene.whole.edges[3 * m], row);
-        give(m, row);
+        if (ambient.jumps()) sd_add_edges(back, &scene.whole.edges[3 * m], &rows[ROW * k]);
+        give(m, &rows[ROW * k]);
       }
     }
   };
-  scene.whole.scatter(12, all, [&](int i, const double *of) { take(i, of, of + 6); });
+  scene.whole.scatter(ROW, all, [&](int i, const double *of) { take(i, of, of + 6); });
 }
 
 void ClumpPoses::drag(const Drag &take, std::vector<char> &left_over)
 {
   const bool turns = scene.settings.rotation;
-  std::vector<double> F, T;
-  double row[7] = {0.0};    // loose, force, torque
+  enum { LOOSE, FORCE, TORQUE = FORCE + 3, ROW = TORQUE + 3 };
+  std::vector<double> rows;
   const auto all = [&](const auto &give) {
     for (const Clump &clump : clumps()) {
       const ClumpShape &is = shape(clump);
       const sd_clump_motion motion = look_at(clump);
-      F.resize(3 * (size_t) own_clump(clump).n);
-      T.resize(3 * (size_t) own_clump(clump).n);
-      sd_clump_drag(&is.shape, &is.clump, &motion, clump.pose, clump.eta, F.data(),
-                    turns ? T.data() : nullptr);
-      for (size_t k = 0; k < (size_t) own_clump(clump).n; k++) {
-        copy<3>(&F[3 * k], row + 1);
-        if (turns) copy<3>(&T[3 * k], row + 4);
-        give(member_of(clump, (int) k), row);
-      }
+      const size_t n = own_clump(clump).n;
+      rows.resize(ROW * n);
+      sd_clump_drag(&is.shape, &is.clump, &motion, clump.pose, clump.eta, ROW, &rows[FORCE],
+                    turns ? &rows[TORQUE] : nullptr);
+      for (size_t k = 0; k < n; k++) give(member_of(clump, (int) k), &rows[ROW * k]);
     }
-    row[0] = 1.0;
+    const double loose_row[ROW] = {1.0};
     for (size_t m = 0; m < rigid.places().size(); m++)
-      if (rigid.places()[m] < 0) give(m, row);
+      if (rigid.places()[m] < 0) give(m, loose_row);
   };
   left_over.assign(atom->nlocal + 1, 0);
   for (int i = 0; i < atom->nlocal; i++) left_over[i] = atom->molecule[i] == 0;
-  scene.whole.scatter(7, all, [&](int i, const double *of) {
-    if (of[0] == 0.0)
-      take(i, of + 1);
+  scene.whole.scatter(ROW, all, [&](int i, const double *of) {
+    if (of[LOOSE] == 0.0)
+      take(i, of + FORCE);
     else
       left_over[i] = 1;
   });

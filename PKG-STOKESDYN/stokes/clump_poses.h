@@ -112,7 +112,9 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
 
   Stamp found;
   std::vector<Clump> all_clumps;
+  /* of who takes part (Epochs::selection) */
   std::vector<int> all_lone;
+  Stamp lone_found;
   const std::vector<Clump> no_clumps;
   const std::vector<int> nobody_lone;
 

@@ -91,7 +91,13 @@ void Drives::push(int i, double change, double *FT) const
 Given Drives::given(double change) const
 {
   Given all;
-  all.loads = [this, change](int i, double *FT) { push(i, change, FT); };
+  if (change > 0.0 || spin.on() || torques.on() || !atom->torque_flag)
+    all.loads = [this, change](int i, double *FT) { push(i, change, FT); };
+  else    // at once: of scenes that solve nothing this is a part of the cost
+    all.loads = [f = atom->f, torque = atom->torque](int i, double *FT) {
+      copy<3>(atom_row(f, i), FT);
+      copy<3>(atom_row(torque, i), FT + 3);
+    };
   if (holds_any())
     all.known = [this](int i, double *V) { return known(i, V); };
   if (squirmers.on())
@@ -99,9 +105,8 @@ Given Drives::given(double change) const
   return all;
 }
 
-void Drives::note_found(int i, const double *W, const double *by_fluid, double change)
+void Drives::note_spin(int i, const double *W, const double *by_fluid, double change)
 {
-  if (!spin.on()) return;
   double pushed[6];
   push(i, change, pushed);
   spin.note_found(i, W, by_fluid, pushed + 3);

@@ -60,7 +60,10 @@ class Drives : protected LAMMPS_NS::Pointers {
    * before; drives stand as long as what is given. */
   Given given(double change) const;
   /* What a solve has found of atom i: angular velocity, and the torque of the fluid */
-  void note_found(int i, const double *W, const double *by_fluid, double change);
+  void note_found(int i, const double *W, const double *by_fluid, double change)
+  {
+    if (spin.on()) note_spin(i, W, by_fluid, change);
+  }
   /* Positions have advanced. */
   void advance() { spin.advance(); }
 
@@ -79,6 +82,7 @@ class Drives : protected LAMMPS_NS::Pointers {
   Squirmers squirmers;
 
   void push(int i, double change, double *FT) const;
+  void note_spin(int i, const double *W, const double *by_fluid, double change);
   void refuse_pinned(const Hydrodynamics &hydro) const;
 };
 

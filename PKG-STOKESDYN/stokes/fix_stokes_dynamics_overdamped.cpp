@@ -26,7 +26,7 @@ using namespace StokesDyn;
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
     RowsFix(lmp, narg, arg), adapt(), noise(voice), directions(lmp), drives(voice, directions), lone_velocity(3),
-    random(6), steps(lmp, drives, directions, output, TURNED), before(9), output(OUTPUTS)
+    random(6), steps(lmp, drives, directions, turned), before(9), output(OUTPUTS), turned(4)
 {
   Keywords in = keywords(narg, arg);
   in.elsewhere("visc fluid_velocity rotation multiblob lubrication rigid_clumps wall cut_off_distance",
@@ -70,7 +70,7 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
   global_freq = 1;
   std::vector<RowsOfAtoms *> rows = {&lone_velocity, &random, &drives.before, &before, &drives.overloaded(), &output};
   if (steps.turns()) rows.push_back(&directions.turning);
-  keep(rows, &output, true);
+  keep(rows, &output, true, NO_BORDERS, {&turned});
 }
 
 int FixStokesDynamicsOverdamped::setmask()
@@ -93,16 +93,19 @@ void FixStokesDynamicsOverdamped::init()
   if (scheme == MIDPOINT) refuse_midpoint(hydro);
 }
 
-/* A sphere that has been in no clump until now has not turned with one. */
+/* A sphere that has been in no clump until now has not turned with one; those of a restart file have turned as
+ * their output says. */
 void FixStokesDynamicsOverdamped::begin_turns(const Hydrodynamics &hydro)
 {
   if (!turns_begun.first_in(hydro.epochs.lists)) return;
   for (int i : hydro.ambient.who()) {
-    double *q = output.writable(i) + TURNED;
+    double *q = turned.writable(i);
+    if (from_file) copy<4>(output[i] + TURNED, q);
     if (!in_clump(hydro, i))
       std::fill_n(q, 4, 0.0);
     else if (q[0] == 0.0 && sd_dot(q + 1, q + 1) == 0.0)
       q[0] = 1.0;
+    copy<4>(q, output.give(i) + TURNED);
   }
 }
 
@@ -111,7 +114,7 @@ void FixStokesDynamicsOverdamped::find_drives(const Hydrodynamics &hydro)
 {
   begin_turns(hydro);
   drives.find([&](int i) {
-    return in_clump(hydro, i) ? output[i] + TURNED : (const double *) nullptr;
+    return in_clump(hydro, i) ? turned[i] : (const double *) nullptr;
   });
 }
 
@@ -221,22 +224,27 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
   causes_due = true;
   if (has_noise_in_solve()) note_causes(hydro);    // which reads another fluid
   last.atoms = atom->natoms;
-  const size_t width = hydro.rotation() ? 6 : 3, turns = steps.turns() ? width : 3;
-  const Solve::ToAtom take = [&, width](int i, const double *v, const double *F) {
+  const bool spins = hydro.rotation(), directed = steps.turns();
+  const Solve::ToAtom take = [&, spins, directed](int i, const double *v, const double *F) {
     const double *fluid = hydro.ambient.velocity(i);
-    double *row = output.writable(i), *moves = atom_row(atom->v, i), V[6];
-    for (size_t d = 0; d < width; d++) V[d] = v[d];
-    steps.keep_in_plane(V, width);
-    for (size_t d = 0; d < 3; d++) {
-      moves[d] = V[d];
-      row[d] = V[d] - fluid[d];
-      row[3 + d] = F[d];
-      row[6 + d] = width == 6 ? F[3 + d] : 0.0;
-      if (width == 6) atom->omega[i][d] = V[3 + d];
+    double *row = output.writable(i), V[6] = {0.0}, torque[3] = {0.0};
+    copy<3>(v, V);
+    if (spins) {
+      copy<3>(v + 3, V + 3);
+      copy<3>(F + 3, torque);
     }
-    if (!in_clump(hydro, i)) copy<3>(V, lone_velocity.writable(i));
-    if (width == 3) return;
-    steps.note_found(i, V + 3);
+    steps.keep_in_plane(V);
+    copy<3>(V, atom_row(atom->v, i));
+    sd_minus(V, fluid, row);
+    copy<3>(F, row + 3);
+    copy<3>(torque, row + 6);
+    if (in_clump(hydro, i))
+      copy<4>(turned[i], row + TURNED);
+    else
+      copy<3>(V, lone_velocity.writable(i));
+    if (!spins) return;
+    copy<3>(V + 3, atom_row(atom->omega, i));
+    if (directed) steps.note_found(i, V + 3);
     drives.note_found(i, V + 3, F + 3, change_of_loads());
   };
   if (scheme == MIDPOINT && noise.on())
@@ -245,6 +253,7 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
     begin_midpoint(hydro, take);
   else
     hydro.velocities(take, given());
+  const size_t turns = directed && spins ? 6 : 3;
   if (noise.on() && scheme != MIDPOINT)
     noise.draw(hydro, turns, [this, turns](int i, const double *y) {
       std::copy_n(y, turns, random.writable(i));

@@ -74,9 +74,11 @@ class FixStokesDynamicsOverdamped : public RowsFix {
    * always on the rank that moves the clump. */
   AtomRows before;
   /* v less that of the fluid, force, torque; of a sphere of a rigid clump the quaternion by which that has
-   * turned since the fix was given: these four are state, from step to step and in restart files */
+   * turned since the fix was given: these four are state in restart files */
   enum { TURNED = 9, OUTPUTS = 13 };
   AtomArray output;
+  /* [4] and from step to step: where bodies go it turns, and nothing else of the output is touched */
+  AtomArray turned;
   enum { KINDS = 10, CAUSES = 12 };
   /* also in restart files: the step of the velocities (-1: never), its length; the length that
    * adapt wants next; atoms there are */

@@ -80,7 +80,7 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
       s.move[d] = update->dt * mean[d];
       if (noise.on()) s.move[d] += noise.scale(update->dt) * noise.of_clump(number)[d];
     }
-    steps.keep_in_plane(s.move, 6);
+    steps.keep_in_plane(s.move);
     return s;
   });
 }

@@ -85,18 +85,13 @@ double FixStokesDynamicsOverdamped::change_of_velocities() const
   for (const ClumpPoses::Clump &clump : poses.clumps()) {
     const ClumpShape &is = poses.shape(clump);
     const int first = poses.own_clump(clump).atom;
-    double now_V[6], turned[6], from[3], change[3];    // turned: into the axes of the shape
+    double now_V[6], change[6];    // in the axes of the shape
     if (!before.has(first)) continue;
     tracked_velocity(clump, is, now_V);
     at_image(hydro, before[first], clump.pose + 9, old);
     for (int d = 0; d < 6; d++) old[d] = now_V[d] - old[d];
-    for (int half : {0, 3}) sd_multiply3t(clump.pose, old + half, turned + half);
-    for (int k = 0; k < is.shape.n; k++) {
-      sd_minus(is.shape.x + 3 * (size_t) k, tracked(is), from);
-      sd_cross(turned + 3, from, change);
-      for (int d = 0; d < 3; d++) change[d] += turned[d];
-      most = std::max(most, sd_dot(change, change) / (is.shape.a[k] * is.shape.a[k]));
-    }
+    for (int half : {0, 3}) sd_multiply3t(clump.pose, old + half, change + half);
+    most = sd_shape_fastest(&is.shape, tracked(is), change, change + 3, most);
   }
   return sqrt(most);
 }

@@ -153,7 +153,6 @@ void Guess::keep_motions(const std::vector<double> &v)
 
 void Guess::turn(int i, const double R[9])
 {
-  if (settings.rigid.each_alone()) return;    // no guess is made there
   double *row = memory->rows.row(i);
   const auto turn = [R](double *v) {
     const double was[3] = {v[0], v[1], v[2]};

@@ -94,8 +94,11 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* The rigid clumps of the last step, and which spheres are free */
   const ClumpPoses &poses() const { return clump_poses; }
   /* The sphere turns with its clump by the rotation matrix R, and so does the force on it, from
-   * which the next solve begins. */
-  void turn(int i, const double R[9]) { solver.guess.turn(i, R); }
+   * which the next solve begins, if there is one. */
+  void turn(int i, const double R[9])
+  {
+    if (!settings.rigid.each_alone()) solver.guess.turn(i, R);
+  }
 
   /* With shells, of the last step: first moments of the forces on the fluid [12 nlocal], xx yy zz xy xz yz of
    * a sphere's points, about its centre, and then of its films. Without inertia those of the points have the

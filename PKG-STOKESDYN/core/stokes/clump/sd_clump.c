@@ -283,7 +283,7 @@ void sd_clump_free(sd_clump *clump)
 }
 
 /* F_k = R table_k in, for the first columns */
-static inline void evaluate(const sd_clump *clump, const double R[9], const double *in, int columns,
+static inline void evaluate(const sd_clump *clump, const double R[9], const double *in, int columns, int width,
                             double *restrict F, double *restrict T)
 {
   for (int k = 0; k < clump->n; k++) {
@@ -291,29 +291,29 @@ static inline void evaluate(const sd_clump *clump, const double R[9], const doub
     double f[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     for (int c = 0; c < columns; c++)
       for (int p = 0; p < 6; p++) f[p] += t[6 * c + p] * in[c];
-    sd_multiply3(R, f, F + 3 * k);
-    if (T) sd_multiply3(R, f + 3, T + 3 * k);
+    sd_multiply3(R, f, F + (long) width * k);
+    if (T) sd_multiply3(R, f + 3, T + (long) width * k);
   }
 }
 
 void sd_clump_forces_rigid(const sd_clump *clump, const double R[9], double eta, const double s0[3],
-                           const double W[3], double *F, double *T)
+                           const double W[3], int width, double *F, double *T)
 {
   double in[RIGID];
   sd_multiply3t(R, s0, in);
   sd_multiply3t(R, W, in + 3);
   for (int c = 0; c < RIGID; c++) in[c] *= eta;
-  evaluate(clump, R, in, RIGID, F, T);
+  evaluate(clump, R, in, RIGID, width, F, T);
 }
 
 /* Slip s0 + A x into the axes of the shape */
 void sd_clump_forces(const sd_clump *clump, const double R[9], double eta, const double s0[3],
-                     const double A[9], double *F, double *T)
+                     const double A[9], int width, double *F, double *T)
 {
   double W[3], in[SD_CLUMP_COLUMNS];
   sd_clump_split_gradient(R, A, W, in + 6);
   sd_multiply3t(R, s0, in);
   sd_multiply3t(R, W, in + 3);
   for (int c = 0; c < SD_CLUMP_COLUMNS; c++) in[c] *= eta;
-  evaluate(clump, R, in, SD_CLUMP_COLUMNS, F, T);
+  evaluate(clump, R, in, SD_CLUMP_COLUMNS, width, F, T);
 }

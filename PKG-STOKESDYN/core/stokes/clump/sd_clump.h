@@ -64,15 +64,15 @@ sd_status sd_clump_create(const sd_shape *shape, const sd_clump_options *options
                           sd_clump *clump, sd_clump_need *need);
 void sd_clump_free(sd_clump *clump);
 
-/* Forces F [3n] and torques T [3n] (NULL: not wanted) on the spheres, in the shape's order, about
- * their own centres, in the lab.
+/* Force F [3] and torque T [3] (NULL: not wanted) on each sphere, in the shape's order, about its own
+ * centre, in the lab: those of sphere k at F + width k and T + width k.
  *   R [9]                    pose: lab = R shape (sd_shape_pose);  eta: viscosity
  *   s0 [3], W [3], A [9]     slip, in the lab; A row-major
  * The rigid version is for slip without strain. No allocation. */
 void sd_clump_forces_rigid(const sd_clump *clump, const double R[9], double eta, const double s0[3],
-                           const double W[3], double *F, double *T);
+                           const double W[3], int width, double *F, double *T);
 void sd_clump_forces(const sd_clump *clump, const double R[9], double eta, const double s0[3],
-                     const double A[9], double *F, double *T);
+                     const double A[9], int width, double *F, double *T);
 
 /* 6x6 resistance about the point at d from the one that R is about. */
 void sd_resistance_shift(const double R[36], const double d[3], double out[36]);

@@ -86,7 +86,7 @@ void sd_clump_flow(const sd_shape *s, const sd_clump_motion *m, const double R[9
  * there, and G less the antisymmetric matrix of w, whose product with r is w x r. */
 static void drag_of_slip(const sd_clump *clump, const sd_clump_motion *m, const double R[9],
                          double eta, const double u[3], const double G[9], const double U[3],
-                         const double w[3], double *F, double *T)
+                         const double w[3], int width, double *F, double *T)
 {
   const double minus_w[3] = {-w[0], -w[1], -w[2]};
   const double spin[9] = {0.0, -w[2], w[1], w[2], 0.0, -w[0], -w[1], w[0], 0.0};
@@ -94,18 +94,18 @@ static void drag_of_slip(const sd_clump *clump, const sd_clump_motion *m, const 
   sd_minus(u, U, slip);
   for (int d = 0; d < 9; d++) A[d] = G[d] - spin[d];
   if (m->u)
-    sd_clump_forces(clump, R, eta, slip, A, F, T);
+    sd_clump_forces(clump, R, eta, slip, A, width, F, T);
   else
-    sd_clump_forces_rigid(clump, R, eta, slip, minus_w, F, T);
+    sd_clump_forces_rigid(clump, R, eta, slip, minus_w, width, F, T);
 }
 
 void sd_clump_drag(const sd_shape *s, const sd_clump *clump, const sd_clump_motion *m,
-                   const double pose[12], double eta, double *F, double *T)
+                   const double pose[12], double eta, int width, double *F, double *T)
 {
   double U[3], w[3], u[3], G[9];
   sd_clump_velocity(s, m, pose, pose + 9, U, w);
   sd_clump_flow(s, m, pose, pose + 9, u, G);
-  drag_of_slip(clump, m, pose, eta, u, G, U, w, F, T);
+  drag_of_slip(clump, m, pose, eta, u, G, U, w, width, F, T);
 }
 
 /* G NULL: the flow is uniform */
@@ -141,20 +141,20 @@ static void free_velocity(const sd_clump *clump, const double R[9], double eta, 
 }
 
 void sd_clump_move_alone(const sd_shape *s, const sd_clump *clump, const sd_clump_motion *m,
-                         const double pose[12], double eta, const double load[6], int held, double V[6],
-                         double *v, double *F, double *T)
+                     const double pose[12], double eta, const double load[6], int held, double V[6],
+                     int width, double *v, double *F, double *T)
 {
   double u[3], G[9];
   sd_clump_flow(s, m, pose, pose + 9, u, G);
   if (!held) free_velocity(clump, pose, eta, load, u, m->u ? G : NULL, V);
   for (int k = 0; k < s->n; k++) {
-    double arm[3], turning[3];
+    double arm[3], turning[3], *of = v + (long) width * k;
     sd_multiply3(pose, s->x + 3 * k, arm);
     sd_cross(V + 3, arm, turning);
     for (int d = 0; d < 3; d++) {
-      v[6 * k + d] = V[d] + turning[d];
-      v[6 * k + 3 + d] = V[3 + d];
+      of[d] = V[d] + turning[d];
+      of[3 + d] = V[3 + d];
     }
   }
-  drag_of_slip(clump, m, pose, eta, u, G, V, V + 3, F, T);
+  drag_of_slip(clump, m, pose, eta, u, G, V, V + 3, width, F, T);
 }

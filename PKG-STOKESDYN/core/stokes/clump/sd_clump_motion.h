@@ -32,10 +32,10 @@ void sd_clump_velocity(const sd_shape *shape, const sd_clump_motion *m, const do
 void sd_clump_flow(const sd_shape *shape, const sd_clump_motion *m, const double R[9],
                    const double c[3], double u[3], double G[9]);
 
-/* Force F [3n] and torque T [3n] (NULL: not wanted) of a fluid of viscosity eta on the spheres of
- * the clump in pose R, c. No allocation. */
+/* Force F [3] and torque T [3] (NULL: not wanted) of a fluid of viscosity eta on each sphere of the clump in
+ * pose R, c, those of sphere k at F + width k and T + width k. No allocation. */
 void sd_clump_drag(const sd_shape *shape, const sd_clump *clump, const sd_clump_motion *m,
-                   const double pose[12], double eta, double *F, double *T);
+                   const double pose[12], double eta, int width, double *F, double *T);
 
 /* Adds force and torque FT [6] at x to the load [6] about a point, from which x is at arm. */
 static inline void sd_clump_add_load(const double arm[3], const double FT[6], double load[6])
@@ -52,11 +52,11 @@ static inline void sd_clump_add_load(const double arm[3], const double FT[6], do
  * torque about the centroid, it moves with V [6], U of the centroid and W, unless V is given (held):
  *   (U, W) = (u, curl u / 2) + N (load + eta C : E) / eta
  * u the flow at its centroid (sd_clump_flow) and E the strain there, N its mobility, C its force from
- * the strain for eta = 1. v [6n]: velocity and angular velocity of its spheres; F, T [3n] (NULL: not
- * wanted): force and torque of the fluid on them. No allocation. */
+ * the strain for eta = 1. v [6]: velocity and angular velocity of each sphere; F, T [3] (NULL: not
+ * wanted): force and torque of the fluid on it; of sphere k at v + width k and so on. No allocation. */
 void sd_clump_move_alone(const sd_shape *shape, const sd_clump *clump, const sd_clump_motion *m,
-                         const double pose[12], double eta, const double load[6], int held, double V[6],
-                         double *v, double *F, double *T);
+                     const double pose[12], double eta, const double load[6], int held, double V[6],
+                     int width, double *v, double *F, double *T);
 
 SD_END_C
 #endif

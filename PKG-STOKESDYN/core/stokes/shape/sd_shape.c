@@ -302,6 +302,8 @@ sd_status sd_shape_create(int n, const double *x, const double *a, sd_shape *s)
     centre(n, x, c, s->x);
     memcpy(s->a, a, sizeof(double) * (size_t) n);
     s->size = sd_shape_size(n, x, a);
+    s->thinnest = a[0];
+    for (int k = 1; k < n; k++) s->thinnest = fmin(s->thinnest, a[k]);
     find_axes(s);
     status = find_frame(s);
   }

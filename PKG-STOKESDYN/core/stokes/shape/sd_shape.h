@@ -26,8 +26,8 @@ typedef struct {
   double *x;
   /* [n] radii */
   double *a;
-  /* largest |x| + a */
-  double size;
+  /* largest |x| + a; smallest a */
+  double size, thinnest;
   /* 0: all centres in one point, 1: on a line, 2: otherwise */
   int rank;
   /* columns: three unit vectors fixed by the shape alone, right- or left-handed */
@@ -75,6 +75,11 @@ int sd_shape_match(const sd_shape *shape, int n, const double *x, const double *
  * R follows from the images of the two main axes, not from a fit of all spheres: exact for a rigid
  * clump, and for one that is not the deviation says so. */
 double sd_shape_pose(const sd_shape *shape, const double *x, double R[9], double c[3]);
+
+/* The largest of `most` and (|v|/a)^2 of the spheres of a shape that moves with U [3] of the point at `from`
+ * [3] and W [3], all in its own axes. One that cannot be above `most` is not looked at sphere by sphere. */
+double sd_shape_fastest(const sd_shape *shape, const double from[3], const double U[3], const double W[3],
+                        double most);
 
 SD_END_C
 #endif

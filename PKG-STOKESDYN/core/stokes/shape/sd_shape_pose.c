@@ -67,3 +67,18 @@ double sd_shape_pose(const sd_shape *s, const double *x, double R[9], double c[3
   }
   return sqrt(worst);
 }
+
+double sd_shape_fastest(const sd_shape *s, const double from[3], const double U[3], const double W[3], double most)
+{
+  const double reach = s->size + sqrt(sd_dot(from, from));
+  const double bound = (sqrt(sd_dot(U, U)) + sqrt(sd_dot(W, W)) * reach) / s->thinnest;
+  if (bound * bound <= most) return most;
+  for (int k = 0; k < s->n; k++) {
+    double arm[3], v[3];
+    sd_minus(s->x + 3 * k, from, arm);
+    sd_cross(W, arm, v);
+    for (int d = 0; d < 3; d++) v[d] += U[d];
+    most = fmax(most, sd_dot(v, v) / (s->a[k] * s->a[k]));
+  }
+  return most;
+}

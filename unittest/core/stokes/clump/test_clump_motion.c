@@ -146,11 +146,11 @@ static void drag_is_that_of_the_slip(void **state)
   sd_clump clump = solve_cluster("helix4_chiral", 12, 0);
   memcpy(s.u, s.v, sizeof(s.u));
   memset(s.gradient, 0, sizeof(s.gradient));
-  sd_clump_drag(&s.shape, &clump, &s.motion, pose, 1.7, F, T);
+  sd_clump_drag(&s.shape, &clump, &s.motion, pose, 1.7, 3, F, T);
   for (int k = 0; k < 3 * s.n; k++) CHECK_NEAR(F[k], 0.0, 1e-11);
   s.motion.u = NULL;
   for (int k = 0; k < s.n; k++) memcpy(s.v + 3 * k, (double[3]){0.3, 0.5, -0.1}, sizeof(double) * 3);
-  sd_clump_drag(&s.shape, &clump, &s.motion, pose, 1.7, F, T);
+  sd_clump_drag(&s.shape, &clump, &s.motion, pose, 1.7, 3, F, T);
   for (int k = 0; k < 3 * s.n; k++) total[k % 3] += F[k];
   for (int p = 0; p < 9; p++) R[p] = clump.R[6 * (p / 3) + p % 3];
   double slip[3], body[3], lab[3], expected[3];
@@ -171,7 +171,7 @@ static void the_fluid_balances_what_acts_on_a_clump(void **state)
   for (int m = 0; m < N_CLUSTERS; m++) {
     scene s;
     sd_clump clump = solve_cluster(clusters[m], 1, 1);
-    double on[6 * MOST], F[3 * MOST], T[3 * MOST], v[6 * MOST], V[6], pose[12];
+    double on[6 * MOST], rows[12 * MOST], V[6], pose[12];
     double sum[6] = {0.0}, load[6] = {0.0}, about_first[6] = {0.0}, arm[3], told[6] = {0.4, -0.2, 0.7, 0.1, 0.9, -0.5};
     make(&s, clusters[m], &seed);
     memcpy(pose, s.R, sizeof(s.R));
@@ -183,23 +183,24 @@ static void the_fluid_balances_what_acts_on_a_clump(void **state)
     }
     sd_minus(s.x, s.c, arm);
     sd_clump_add_load(arm, about_first, load);
-    sd_clump_move_alone(&s.shape, &clump, &s.motion, pose, 1.7, load, 0, V, v, F, T);
+    sd_clump_move_alone(&s.shape, &clump, &s.motion, pose, 1.7, load, 0, V, 12, rows, rows + 6, rows + 9);
     for (int k = 0; k < s.n; k++) {
+      const double *v = rows + 12 * k, *F = v + 6, *T = v + 9;
       double left[3], couple[3], turning[3];
       sd_minus(s.x + 3 * k, s.c, arm);
-      for (int d = 0; d < 3; d++) left[d] = F[3 * k + d] + on[6 * k + d];
+      for (int d = 0; d < 3; d++) left[d] = F[d] + on[6 * k + d];
       sd_cross(arm, left, couple);
       sd_cross(V + 3, arm, turning);
       for (int d = 0; d < 3; d++) {
         sum[d] += left[d];
-        sum[3 + d] += couple[d] + T[3 * k + d] + on[6 * k + 3 + d];
-        CHECK_NEAR(v[6 * k + d], V[d] + turning[d], 1e-12);
-        CHECK_NEAR(v[6 * k + 3 + d], V[3 + d], 0.0);
+        sum[3 + d] += couple[d] + T[d] + on[6 * k + 3 + d];
+        CHECK_NEAR(v[d], V[d] + turning[d], 1e-12);
+        CHECK_NEAR(v[3 + d], V[3 + d], 0.0);
       }
     }
     for (int d = 0; d < 6; d++) CHECK_NEAR(sum[d], 0.0, 1e-9);
     memcpy(V, told, sizeof(V));
-    sd_clump_move_alone(&s.shape, &clump, &s.motion, pose, 1.7, load, 1, V, v, F, T);
+    sd_clump_move_alone(&s.shape, &clump, &s.motion, pose, 1.7, load, 1, V, 12, rows, rows + 6, rows + 9);
     for (int d = 0; d < 6; d++) CHECK_NEAR(V[d], told[d], 0.0);
     sd_clump_free(&clump);
     sd_shape_free(&s.shape);

@@ -325,6 +325,36 @@ static void random_clumps_match_themselves(void **state)
   }
 }
 
+/* Whether or not its spheres are looked at one by one: with what there is below, at and above the largest of them. */
+static void the_fastest_sphere_is_found_whatever_there_is(void **state)
+{
+  (void) state;
+  uint64_t seed = 29;
+  double x[3 * MOST], a[MOST];
+  for (int m = 0; m < N_CLUSTERS; m++) {
+    const int n = table_cluster(clusters[m], x, a);
+    double from[3], U[3], W[3], largest = 0.0;
+    sd_shape s;
+    for (int k = 0; k < n; k++) a[k] *= uniform(&seed, 0.8, 1.2);
+    assert_int_equal(sd_shape_create(n, x, a, &s), SD_OK);
+    for (int d = 0; d < 3; d++) {
+      from[d] = uniform(&seed, -0.5, 0.5);
+      U[d] = uniform(&seed, -1.0, 1.0);
+      W[d] = uniform(&seed, -1.0, 1.0);
+    }
+    for (int k = 0; k < n; k++) {
+      double arm[3], v[3];
+      sd_minus(s.x + 3 * k, from, arm);
+      sd_cross(W, arm, v);
+      for (int d = 0; d < 3; d++) v[d] += U[d];
+      largest = fmax(largest, sd_dot(v, v) / (s.a[k] * s.a[k]));
+    }
+    for (double part = 0.0; part < 3.0; part += 0.25)
+      CHECK_NEAR(sd_shape_fastest(&s, from, U, W, part * largest), fmax(part, 1.0) * largest, 1e-13 * largest);
+    sd_shape_free(&s);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -340,6 +370,7 @@ int main(void)
       cmocka_unit_test(six_digits_are_one_shape),
       cmocka_unit_test(nearly_a_line_is_a_line),
       cmocka_unit_test(random_clumps_match_themselves),
+      cmocka_unit_test(the_fastest_sphere_is_found_whatever_there_is),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
