@@ -14,6 +14,17 @@ template <size_t N> inline void copy(const double *from, double *to)
   memcpy(to, from, N * sizeof(double));
 }
 
+/* The same of a row whose width only a run knows: a point's, a force's, that with a torque, or another */
+inline void copy_row(size_t width, const double *from, double *to)
+{
+  switch (width) {
+    case 1: return copy<1>(from, to);
+    case 3: return copy<3>(from, to);
+    case 6: return copy<6>(from, to);
+    default: memcpy(to, from, width * sizeof(double));
+  }
+}
+
 /* Row i of one of LAMMPS's arrays of three numbers, whose rows stand one after the other (Memory::create),
  * without a look at its pointer: loops over all atoms wait for memory. */
 inline double *atom_row(double **rows, int i)

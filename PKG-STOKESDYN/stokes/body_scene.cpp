@@ -34,7 +34,7 @@ void BodyScene::place(int numbers)
 {
   width = numbers;
   const size_t m = width;
-  const std::vector<double> rows = scene.rows(3 * width, [&](int i, double *out) {
+  const auto row = [&](int i, double *out) {
     double load[6];
     given.load(i, load);
     for (size_t d = 0; d < m; d++) {
@@ -45,8 +45,8 @@ void BodyScene::place(int numbers)
       ambient.slip(i, out + m);
     else
       ambient.fluid(i, out + m);
-  });
-  take_apart(rows, scene.size(), {{&F, m}, {&flow, m}, {&resistance, m}});
+  };
+  scene.columns(row, {{&F, m}, {&flow, m}, {&resistance, m}});
   if (given.velocities) return;
   refuse_net_force(Voice(lmp, StokesSettings::COMMAND), scene, F, m);
   scene.drift(flow.data(), width, 1.0);

@@ -105,7 +105,7 @@ void FixStokesDynamicsOverdamped::begin_turns(const Hydrodynamics &hydro)
       std::fill_n(q, 4, 0.0);
     else if (q[0] == 0.0 && sd_dot(q + 1, q + 1) == 0.0)
       q[0] = 1.0;
-    copy<4>(q, output.give(i) + TURNED);
+    copy<4>(q, output.writable(i) + TURNED);
   }
 }
 

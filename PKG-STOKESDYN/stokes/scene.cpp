@@ -71,13 +71,12 @@ void Scene::stand(const std::vector<int> &who, const Ambient &ambient)
   rows_found.set(epochs.lists);
   jumping = ambient.jumps();
   if (jumping) std::copy_n(ambient.jumps(), 6, jumps);
-  const size_t n = tags.size();
-  const std::vector<double> known = rows(5, [&](int i, double *out) {
-    std::copy_n(atom->x[i], 3, out);
+  const auto row = [&](int i, double *out) {
+    copy<3>(atom->x[i], out);
     out[3] = atom->radius[i];
     out[4] = 1.0 / sqrt(ambient.viscosity(i));
-  });
-  take_apart(known, n, {{&x, 3}, {&a, 1}, {&w, 1}});
+  };
+  columns(row, {{&x, 3}, {&a, 1}, {&w, 1}});
   for (size_t m = 0; m < row_of.size(); m++)
     if (row_of[m] >= 0) std::copy_n(&whole.x[3 * m], 3, &x[3 * (size_t) row_of[m]]);
 }
@@ -244,18 +243,20 @@ void Scene::gather()
     double x[3], a, w;
     int64_t tag, molecule;
   };
-  std::vector<Sphere> ours;
-  ours.reserve(tags.size());
-  for (size_t k = 0; k < tags.size(); k++)
-    ours.push_back({{x[3 * k], x[3 * k + 1], x[3 * k + 2]}, a[k], w[k], tags[k], molecules[k]});
+  const auto here = [this](size_t k) {
+    return Sphere{{x[3 * k], x[3 * k + 1], x[3 * k + 2]}, a[k], w[k], tags[k], molecules[k]};
+  };
+  std::vector<Sphere> told;    // of one rank nobody need be
+  for (size_t k = 0; k < tags.size() && comm->nprocs > 1; k++) told.push_back(here(k));
+  if (comm->nprocs > 1) told = from_all(world, told);
+  const auto sphere = [&](size_t j) { return comm->nprocs > 1 ? told[j] : here(j); };
   spheres_of_rank = from_all(world, std::vector<int>(1, size()));
-  const std::vector<Sphere> all = from_all(world, ours);
-  n_all = all.size();
+  n_all = comm->nprocs > 1 ? (int) told.size() : size();
   if (!sorted.is(epochs.rows)) {
     std::vector<int> by_tag(n_all);
     for (int j = 0; j < n_all; j++) by_tag[j] = j;
-    std::sort(by_tag.begin(), by_tag.end(), [&all](int p, int q) {
-      return all[p].tag < all[q].tag;
+    std::sort(by_tag.begin(), by_tag.end(), [&sphere](int p, int q) {
+      return sphere(p).tag < sphere(q).tag;
     });
     place_of.resize(n_all);
     for (int k = 0; k < n_all; k++) place_of[by_tag[k]] = k;
@@ -265,7 +266,7 @@ void Scene::gather()
   for (auto *v : {&all_a, &all_w}) v->resize(n_all);
   all_molecule.resize(n_all);
   for (int j = 0; j < n_all; j++) {
-    const Sphere &s = all[j];
+    const Sphere s = sphere(j);
     const size_t k = place_of[j];
     copy<3>(s.x, &all_x[3 * k]);
     all_a[k] = s.a;
@@ -282,7 +283,7 @@ void Scene::to_cloud(const double *own_rows, double *cloud_rows, int width, cons
   const double *from = comm->nprocs > 1 ? all.data() : own_rows;
   for (int j = 0; j < n_all; j++) {
     const size_t k = place_of[j], at = first ? first[k] : k, count = first ? first[k + 1] - at : 1;
-    std::copy_n(from, m * count, cloud_rows + m * at);
+    copy_row(m * count, from, cloud_rows + m * at);
     from += m * count;
   }
 }
@@ -298,7 +299,7 @@ void Scene::from_cloud(const double *cloud_rows, double *own_rows, int width, co
     const double *start = to;
     for (const int end = j + spheres; j < end; j++) {
       const size_t k = place_of[j], at = first ? first[k] : k, count = first ? first[k + 1] - at : 1;
-      std::copy_n(cloud_rows + m * at, m * count, to);
+      copy_row(m * count, cloud_rows + m * at, to);
       to += m * count;
     }
     counts.push_back(mpi_count((double) (to - start)));

@@ -10,6 +10,7 @@
 
 #include "ambient.h"
 #include "boundary.h"
+#include "copy.h"
 #include "halo.h"
 #include "pointers.h"
 #include "shells.h"
@@ -41,7 +42,7 @@ inline void take_apart(const std::vector<double> &rows, size_t n, std::initializ
     columns.to->reserve(columns.count * (n + 1));    // data() is a place even where there are no rows
     columns.to->resize(columns.count * n);
     for (size_t k = 0; k < n; k++)
-      std::copy_n(rows.data() + width * k + at, columns.count, columns.to->data() + columns.count * k);
+      copy_row(columns.count, rows.data() + width * k + at, columns.to->data() + columns.count * k);
     at += columns.count;
   }
 }
@@ -112,6 +113,15 @@ class Scene : protected LAMMPS_NS::Pointers {
     std::vector<double> out(width * (tags.size() + 1));
     rows_to(width, row, [&](size_t k) { return &out[width * k]; });
     return out;
+  }
+  /* The same taken apart, where row(i, out) writes all numbers of a row */
+  template <class Row> void columns(const Row &row, std::initializer_list<Columns> all)
+  {
+    size_t width = 0;
+    for (const Columns &columns : all) width += columns.count;
+    together.resize(width * (tags.size() + 1));
+    rows_to((int) width, row, [&](size_t k) { return &together[width * k]; });
+    take_apart(together, tags.size(), all);
   }
   template <class Take> void to_atoms(int width, const double *rows, const Take &take) const
   {
@@ -209,6 +219,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   std::vector<int64_t> tags, molecules;
   /* rows, then copies */
   std::vector<double> x, a, w;
+  /* of columns(): kept, since what a step asks the system for and gives back is cleared each time */
+  std::vector<double> together;
   double most = 0.0, least = 0.0;
   /* by how much the velocity of an image grows with each edge of the box: Ambient::jumps */
   double jumps[6] = {0.0};

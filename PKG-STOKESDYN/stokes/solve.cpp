@@ -1,5 +1,6 @@
 #include "solve.h"
 
+#include "copy.h"
 #include "keywords.h"
 #include "settings.h"
 
@@ -72,16 +73,20 @@ sd_status Solve::solve_bodies(const How &how, Guess::Start start, sd_solve_repor
 
 void Solve::hand_out(const ToAtom &take) const
 {
-  const size_t m = bodies.width, n = scene.size();
-  std::vector<double> atoms_v = v, moved(2 * m * n + 2 * m);
-  scene.drift(atoms_v.data(), bodies.width, -1.0);    // not those of the image next to its clump
-  for (size_t k = 0; k < n; k++) {
-    double *row = &moved[2 * m * k];
-    std::copy_n(&atoms_v[m * k], m, row);
-    for (size_t d = 0; d < m; d++) row[m + d] = -exerted[m * k + d];
+  const size_t m = bodies.width;
+  std::vector<double> of_atoms;    // not those of the image next to its clump
+  if (scene.drift_of_images()) {
+    of_atoms = v;
+    scene.drift(of_atoms.data(), bodies.width, -1.0);
   }
-  scene.to_atoms(2 * bodies.width, moved.data(),
-                 [&](int i, const double *row) { take(i, row, row + m); });
+  const double *moves = of_atoms.empty() ? v.data() : of_atoms.data();
+  double moved[12];
+  const auto at = [&](size_t k) {
+    copy_row(m, moves + m * k, moved);
+    for (size_t d = 0; d < m; d++) moved[m + d] = -exerted[m * k + d];
+    return (const double *) moved;
+  };
+  scene.some_to_atoms(2 * bodies.width, at, [&](int i, const double *row) { take(i, row, row + m); });
 }
 
 // --- points whose velocities are given -------------------------------------------------------------

@@ -50,9 +50,9 @@ def cloud(folder, n):
 
 
 def spheres(folder, data, rotation, overdamped, steps):
-    moves = ("pair_style stokes_dynamics cut_off_distance inf visc 1 rotation {}\npair_coeff * *\nfix f all addforce 0 0 -1\n"
+    moves = ("pair_style stokes_dynamics cut_off_distance inf far_field direct visc 1 rotation {}\npair_coeff * *\nfix f all addforce 0 0 -1\n"
              "fix m all stokes_dynamics/overdamped") if overdamped else (
-             "pair_style stokes_dynamics cut_off_distance inf visc 1 rotation {} algorithm 2 max_iter 1 relative_tolerance 1e-15 "
+             "pair_style stokes_dynamics cut_off_distance inf far_field direct visc 1 rotation {} algorithm 2 max_iter 1 "
              "warm_start no precondition none\npair_coeff * *\nvelocity all set 0 0 1\nfix d all stokes_dynamics apply no")
     with open(os.path.join(folder, "in"), "w") as out:
         out.write("units lj\natom_style sphere\nboundary f f f\nplugin load stokesdynplugin.so\n"
