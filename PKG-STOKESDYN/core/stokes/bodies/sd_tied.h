@@ -16,6 +16,8 @@ typedef struct sd_tie {
   /* of the bodies of this rank and of `others`, those of other ranks that are near */
   sd_block_cholesky factor;
   int others;
+  /* does a pair as stiff as contact chain bodies together across ranks? The same on all of them */
+  int severed;
   /* [6 (bodies + others)] 1 over the roots of the diagonal of H_0; 0: nobody is near to this body,
    * or this of its velocity is given */
   double *scale;

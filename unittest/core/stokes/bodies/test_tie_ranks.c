@@ -5,6 +5,7 @@
 #include "settling.h"
 
 enum { N = RANKS_SPHERES, MOST_RANKS = RANKS_MOST };
+static const double STEP = 0.02;
 
 /* What is found: rows by the number of their sphere, products with the mobility and with L */
 typedef struct {
@@ -107,6 +108,15 @@ static void solve_on(int ranks, settling *s, answer *found, int warm, double tol
   munmap(on_ranks(ranks, work, &t), sizeof(shared));
 }
 
+/* All spheres so many steps on, by velocities V */
+static void go_on(settling *s, const double *V, double step)
+{
+  for (int i = 0; i < N; i++)
+    for (int d = 0; d < 3; d++) s->near.s.x[3 * i + d] += step * V[6 * i + d];
+  sd_packed_free(&s->packed);
+  settling_place(s);
+}
+
 static void films_of_ranks_are_those_of_one(void **state)
 {
   (void) state;
@@ -118,7 +128,7 @@ static void films_of_ranks_are_those_of_one(void **state)
   for (int e = 0; e < 3; e++) {
     settling *s = settling_create(N, of[e].phi, of[e].gap);
     double *reference = malloc(sizeof(double) * 6 * N);
-    int products = 0;
+    int products = 0, later = 0;
     long within = 0;
     solve_on(1, s, found, 0, 1e-9);
     memcpy(reference, found->v, sizeof(double) * 6 * N);
@@ -138,8 +148,14 @@ static void films_of_ranks_are_those_of_one(void **state)
       assert_true(found->products <= products + 1);
       assert_true((double) found->within <= of[e].most * (double) within);
       solve_on(ranks, s, found, 1, 1e-3); /* as it stands, from what it found */
-      print_message("; again %d, %ld\n", found->products, found->within);
+      print_message("; again %d, %ld", found->products, found->within);
       assert_true(found->products <= 2);
+      go_on(s, reference, STEP);
+      solve_on(ranks, s, found, 1, 1e-3);
+      print_message("; a step later %d, %ld\n", found->products, found->within);
+      if (ranks == 1) later = found->products;
+      assert_true(found->products <= later + 1);
+      go_on(s, reference, -STEP);
     }
     free(reference);
     settling_free(s);
