@@ -40,7 +40,8 @@ void DeformSettings::check(LAMMPS *lmp, Fix *fix)
   if (!known)
     StokesDyn::fail_one(lmp,
                         name_of(fix) + " keeps its settings in another way than that of LAMMPS "
-                        SD_LAMMPS_VERSION ": build this plugin from the source of this LAMMPS (-D LAMMPS_SOURCE_DIR=DIR)");
+                        SD_LAMMPS_VERSION ": build this plugin from the source of this LAMMPS "
+                        "(-D LAMMPS_SOURCE_DIR=DIR)");
 }
 
 }    // namespace StokesDyn

@@ -212,8 +212,8 @@ void PairSph::coeff(int narg, char **arg)
     if (k == MU && !model.friction) in.refuse("the pair_style has no viscosity");
     if (k > MU && law == SD_SPH_NEWTON) in.refuse("the pair_style has no rheology");
     if (k >= MU && has_own_viscosities() && ihi < jlo)
-      in.refuse("with rheology and with implicit each particle has the viscosity of its own type, and a pair their harmonic "
-                "mean: give it by pair_coeff I I");
+      in.refuse("with rheology and with implicit each particle has the viscosity of its own type, and a pair "
+                "their harmonic mean: give it by pair_coeff I I");
     values[k] = may_vanish(k) ? in.not_negative() : in.positive();
   }
 

@@ -202,8 +202,8 @@ void ClumpPoses::velocities(int width, const ToAtom &take)
       sd_clump_add_load(arm, &loads[6 * (size_t) clump.number], on_clump);
       rows.resize(ROW * n);
       sd_clump_move_alone(&is.shape, &is.clump, &motion, clump.pose, clump.eta, on_clump,
-                      clump.known == SD_BODY_HELD, clump.V, ROW, rows.data(), &rows[6],
-                      width == 6 ? &rows[9] : nullptr);
+                          clump.known == SD_BODY_HELD, clump.V, ROW, rows.data(), &rows[6],
+                          width == 6 ? &rows[9] : nullptr);
       for (size_t k = 0; k < n; k++) {
         const size_t m = member_of(clump, (int) k);
         if (ambient.jumps()) sd_add_edges(back, &scene.whole.edges[3 * m], &rows[ROW * k]);

@@ -93,7 +93,9 @@ int Shells::kind(double a) const
   int kind = 0;
   if (!unlike()) return 0;
   for (const auto &larger : LARGER)
-    if (larger.points > settings.points && larger.points <= settings.most && above(a, larger.from * classes.smallest)) kind++;
+    if (larger.points > settings.points && larger.points <= settings.most &&
+        above(a, larger.from * classes.smallest))
+      kind++;
   return kind;
 }
 

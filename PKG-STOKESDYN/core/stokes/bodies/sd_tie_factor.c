@@ -167,7 +167,8 @@ static int by_identity(const void *one, const void *other)
   return (p->copy > q->copy) - (p->copy < q->copy);
 }
 
-/* Those with spheres near this rank's. Copies of one body are brought together, and the first of each sphere stands for it. */
+/* Those with spheres near this rank's. Copies of one body are brought together, and the first of each sphere
+ * stands for it. */
 static sd_status know_others(const sd_bodies *A, assembly *a)
 {
   sd_tie *t = A->tie;

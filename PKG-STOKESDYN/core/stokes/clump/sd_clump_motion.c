@@ -141,8 +141,8 @@ static void free_velocity(const sd_clump *clump, const double R[9], double eta, 
 }
 
 void sd_clump_move_alone(const sd_shape *s, const sd_clump *clump, const sd_clump_motion *m,
-                     const double pose[12], double eta, const double load[6], int held, double V[6],
-                     int width, double *v, double *F, double *T)
+                         const double pose[12], double eta, const double load[6], int held, double V[6],
+                         int width, double *v, double *F, double *T)
 {
   double u[3], G[9];
   sd_clump_flow(s, m, pose, pose + 9, u, G);

@@ -55,8 +55,8 @@ static inline void sd_clump_add_load(const double arm[3], const double FT[6], do
  * the strain for eta = 1. v [6]: velocity and angular velocity of each sphere; F, T [3] (NULL: not
  * wanted): force and torque of the fluid on it; of sphere k at v + width k and so on. No allocation. */
 void sd_clump_move_alone(const sd_shape *shape, const sd_clump *clump, const sd_clump_motion *m,
-                     const double pose[12], double eta, const double load[6], int held, double V[6],
-                     int width, double *v, double *F, double *T);
+                         const double pose[12], double eta, const double load[6], int held, double V[6],
+                         int width, double *v, double *F, double *T);
 
 SD_END_C
 #endif

@@ -176,7 +176,7 @@ sd_status sd_ewald_gaussian_at(const sd_ewald_box *box, const sd_ewald_class *s,
 }
 
 sd_status sd_ewald_prepare(const sd_ewald_box *box, const sd_ewald_class *all, double tolerance,
-                         sd_ewald *out, int *some)
+                           sd_ewald *out, int *some)
 {
   const sd_ewald_box own = *box;
   *some = 0;

@@ -33,7 +33,7 @@ static inline void put_cross(double c, const double h[3], double *B)
 
 /* What the wall adds to the block of spheres at xi and xj */
 static void un_add_image(const sd_law *law, const double xi[3], double ai, const double xj[3],
-                      double aj, double taper, int width, double B[36])
+                         double aj, double taper, int width, double B[36])
 {
   const double root_i[2] = {sqrt(6.0 * SD_PI * ai), sqrt(8.0 * SD_PI * ai) * ai};
   const double root_j[2] = {sqrt(6.0 * SD_PI * aj), sqrt(8.0 * SD_PI * aj) * aj};
@@ -46,8 +46,9 @@ static void un_add_image(const sd_law *law, const double xi[3], double ai, const
 
 /* Block of C into B [6 x 6], column-major, of which width 3 uses a corner. The pair tensors of
  * sd_tensor.h, times the roots of the diagonal:
- *   U F   1/(6 pi) times 6 pi sqrt(a_i a_j)            U T   1/(8 pi) times sqrt(6 a_i 8 a_j^3) pi = sqrt(3)/2 sqrt(a_i a_j^3)
- *   W T   1/(8 pi) times 8 pi sqrt(a_i^3 a_j^3)        W F   sqrt(3)/2 sqrt(a_i^3 a_j) */
+ *   U F   1/(6 pi) times 6 pi sqrt(a_i a_j)
+ *   U T   1/(8 pi) times sqrt(6 a_i 8 a_j^3) pi = sqrt(3)/2 sqrt(a_i a_j^3);  W F  sqrt(3)/2 sqrt(a_i^3 a_j)
+ *   W T   1/(8 pi) times 8 pi sqrt(a_i^3 a_j^3) */
 static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int j, int width,
                               double B[36])
 {
@@ -78,7 +79,7 @@ static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int
 
 /* That of a sphere with itself, and a little on the diagonal */
 static inline void un_own_block(const sd_law *law, const sd_spheres *s, int i, int width, double extra,
-                             double B[36])
+                                double B[36])
 {
   double x[3];
   memset(B, 0, 36 * sizeof(double));
@@ -91,7 +92,7 @@ static inline void un_own_block(const sd_law *law, const sd_spheres *s, int i, i
 /* Lower triangle of C of the spheres member[0 ... m-1], with 1 + extra on the diagonal; into one of
  * A, A_single. */
 static inline void un_fill(const sd_law *law, const sd_spheres *s, const int *member, int m, int width,
-                        double extra, double *A, float *A_single)
+                           double extra, double *A, float *A_single)
 {
   const long lda = width * (long) m;
   double B[36];

@@ -1,5 +1,5 @@
-/* Kernels of the fast product, of doubles; sd_product_single_kernels.c: the same of floats. The block of a pair (sd_tensor_lanes.h) is the same for both of its
- * spheres: the symmetric kernels compute it once. */
+/* Kernels of the fast product, of doubles; sd_product_single_kernels.c: the same of floats. The block of a pair
+ * (sd_tensor_lanes.h) is the same for both of its spheres: the symmetric kernels compute it once. */
 #include "sd_product_loops.h"
 
 /* f and h of the force. squares = a_i^2 + a_j^2 */
