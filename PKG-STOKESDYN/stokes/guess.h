@@ -6,8 +6,7 @@
  *   of both   where spheres are shells the forces of their points on the fluid, of the last two solves, in
  *             the axes of the shell, so that they turn with it
  *
- * and stands for as long as one number does, that of all that it follows from: number(). Nobody else decides
- * that a guess is stale. */
+ * and stands for as long as one number does, that of all that it follows from: number(). */
 #ifndef SD_GUESS_H
 #define SD_GUESS_H
 
