@@ -78,25 +78,28 @@ static double range_in_gap(const sd_ewald_box *box, const splitting *by, double 
 static const double COMMON = 0.62;
 
 /* xi, a_ref, range, the window, and the largest spacing of the grid. What is lost tightens the tolerance,
- * which in turn moves xi. */
-static void split(sd_ewald *e, const splitting *by, double *y)
+ * which in turn moves xi; *near: the tolerance of the range and of the spacing. */
+static void split(sd_ewald *e, const splitting *by, double *near)
 {
   e->largest = by->spheres.largest;
   e->a_ref = by->a_ref;
-  double t = sd_splitting_tightened(by, e->tolerance, 0.0);
+  double t = sd_splitting_tightened(by, e->tolerance, 0.0), y = 0.0;
+  *near = t;
   for (int k = 0; k < 6; k++) {
-    *y = sd_splitting_y(&e->box, by, t);
-    e->range = fmax(natural_range(&e->box, by, log10(1.0 / t)), least_range(e, by, *y));
-    if (by->gap > 0.0) e->range = fmin(e->range, range_in_gap(&e->box, by, t, *y));
-    e->xi = *y / e->range;
-    if (k < 5) t = sd_splitting_tightened(by, e->tolerance, e->xi * *y);
+    y = sd_splitting_y(&e->box, by, *near);
+    e->range = fmax(natural_range(&e->box, by, log10(1.0 / *near)), least_range(e, by, y));
+    if (by->gap > 0.0) e->range = fmin(e->range, range_in_gap(&e->box, by, *near, y));
+    e->xi = y / e->range;
+    if (k == 5) break;
+    t = sd_splitting_tightened(by, e->tolerance, e->xi * y);
+    *near = fmin(t, sd_splitting_unlike(e, by, *near));
   }
-  e->points = sd_splitting_points_of(by, e->tolerance, e->xi * *y, t) + by->tall;
+  e->points = sd_splitting_points_of(by, e->tolerance, e->xi * y, t) + by->tall;
   e->beta = sd_splitting_beta(e, by) * e->points;
   while (by->fall == BAND && e->points < SD_EWALD_MOST_POINTS && sd_splitting_common_flow(e) > COMMON * e->tolerance)
     e->beta = sd_splitting_beta(e, by) * ++e->points;
   e->reach = e->range;
-  e->spacing = sd_splitting_spacing(e, by, t, *y);
+  e->spacing = sd_splitting_spacing(e, by, *near, y);
 }
 
 sd_status sd_ewald_lay_grid(const sd_ewald_box *box, double h, int points, double *spacing, int *grid)
@@ -124,13 +127,21 @@ static void start(sd_ewald *e, const sd_ewald_box *box, double count, double tol
   e->tolerance = tolerance;
 }
 
-/* Numbers of grid points are few: what the next of them is finer than asked for shortens the range. */
-static void end_at_band(sd_ewald *e, const splitting *by, double y)
+/* Numbers of grid points are few: what the next of them is finer than asked for shortens the range, of unlike spheres
+ * less than in proportion. */
+static void end_at_band(sd_ewald *e, const splitting *by, double near)
 {
-  double h = e->box.periodic ? 0.0 : e->spacing;
+  double h = e->box.periodic ? 0.0 : e->spacing, y = sd_splitting_y(&e->box, by, near);
   for (int d = 0; d < 3 && e->box.periodic; d++)
     h = fmax(h, sd_ewald_edge_length(&e->box, d) / e->grid[d]);
-  e->range = fmax(fmin(1.0, h / e->spacing) * e->range, least_range(e, by, y));
+  const double shorter = fmin(1.0, h / e->spacing) * e->range, spacings = sd_splitting_band_spacings(&e->box, by, near);
+  e->range = fmax(shorter, least_range(e, by, y));
+  for (int k = 0; k < 3; k++) {
+    e->xi = y / e->range;
+    near = fmin(near, sd_splitting_unlike(e, by, near));
+    y = sd_splitting_y(&e->box, by, near);
+    e->range = fmax(shorter * (sd_splitting_band_spacings(&e->box, by, near) / spacings), least_range(e, by, y));
+  }
   e->reach = e->range;
   e->xi = y / e->range;
   e->band = 2.0 * e->xi * y;
@@ -140,10 +151,10 @@ static void end_at_band(sd_ewald *e, const splitting *by, double y)
 static sd_status one_level(sd_ewald *e, fall how, const sd_ewald_class *s, int width, double most)
 {
   const splitting by = splitting_for(how, s, width, most);
-  double y;
-  split(e, &by, &y);
+  double near;
+  split(e, &by, &near);
   const sd_status status = sd_ewald_lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
-  if (status == SD_OK && how == BAND) end_at_band(e, &by, y);
+  if (status == SD_OK && how == BAND) end_at_band(e, &by, near);
   return status;
 }
 
@@ -248,16 +259,18 @@ sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
  * also for equal spheres. *y is that of a Gaussian with the tolerance that is left. */
 static sd_status level_in_slab(sd_ewald *e, splitting *by, double *y)
 {
-  double y_of_fall;
-  split(e, by, &y_of_fall);
+  double near;
+  split(e, by, &near);
+  double y_of_fall = sd_splitting_y(&e->box, by, near);
   if (e->range < (1.0 - 1e-9) * y_of_fall * by->a_ref / 0.8) {
     by->slopes = 1;
     by->a_ref = sd_ewald_six_digits(0.8 * e->range / y_of_fall);
-    split(e, by, &y_of_fall);
+    split(e, by, &near);
+    y_of_fall = sd_splitting_y(&e->box, by, near);
   }
   *y = sqrt(log(1.0 / sd_splitting_tightened(by, e->tolerance, e->xi * y_of_fall)));
   const sd_status status = sd_ewald_lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
-  if (status == SD_OK && by->fall == BAND) end_at_band(e, by, y_of_fall);
+  if (status == SD_OK && by->fall == BAND) end_at_band(e, by, near);
   return status;
 }
 
