@@ -214,6 +214,14 @@ static void weights(const sd_ewald *e, int width, double *weight)
   weight[SD_K1] = equal ? 0.0 : a * R * b;
 }
 
+/* Of one pair, relative to I_0(0). Those of all neighbours add up as squares: there are up to 250 at 1e-3, and 800
+ * where waves are Gaussians at the tightest tolerances. */
+static double polynomial_error(const sd_ewald *e)
+{
+  const double neighbours = 4.0 / 3.0 * SD_PI * pow(e->range, 3.0) * e->count / sd_ewald_volume(&e->box);
+  return 0.1 * e->tolerance / sqrt(fmax(1.0, neighbours / 250.0));
+}
+
 int sd_radial_fit(const sd_ewald *e, int width, double *coefficient)
 {
   enum { NODES = SD_CHEBYSHEV_MOST };
@@ -226,6 +234,7 @@ int sd_radial_fit(const sd_ewald *e, int width, double *coefficient)
   }
   weights(e, width, weight);
   sd_radial(e, 0.0, D);
+  const double most = polynomial_error(e) * D[SD_I0];
   int degree = 1;
   for (int f = 0; f < SD_RADIALS; f++) {
     sd_chebyshev_series(sample[f], NODES, series[f]);
@@ -233,7 +242,7 @@ int sd_radial_fit(const sd_ewald *e, int width, double *coefficient)
     int k = NODES - 1;
     for (; k > degree; k--) {
       rest += weight[f] * fabs((double) series[f][k]);
-      if (rest > 0.1 * e->tolerance * D[SD_I0]) break;
+      if (rest > most) break;
     }
     degree = k;
   }
