@@ -63,21 +63,10 @@ INLINE void transpose(vec r[4])
 }
 
 #ifdef WIDE
-/* Rows of eight floats are half a vector, or a whole one: each is loaded at once. With row k beside row
- * k + 4 each 256 bits then have four columns of four rows in one part, the four others in the other. */
-#define GATHERS_EIGHT
-INLINE void gather_eight(const real *rows, const int j[LANES], vec r[8])
+/* Rows of eight become columns. Of four rows transposed each 256 bits have four columns in one part, the four
+ * others in the other. */
+INLINE void columns_of_eight(vec r[8])
 {
-  for (int k = 0; k < 8; k++) {
-#if LANES == 16
-    const int *at = j + k + k / 4 * 4;
-    const __m256 low = _mm256_loadu_ps(rows + 8 * (long) at[0]);
-    const __m256 high = _mm256_loadu_ps(rows + 8 * (long) at[4]);
-    r[k] = _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
-#else
-    r[k] = load_any(rows + 8 * (long) j[k]);
-#endif
-  }
   transpose(r);
   transpose(r + 4);
   for (int c = 0; c < 4; c++) {
@@ -91,6 +80,24 @@ INLINE void gather_eight(const real *rows, const int j[LANES], vec r[8])
 #endif
   }
 }
+
+/* Rows of eight floats are half a vector, with row k + 4 beside row k, or a whole one: each is loaded at
+ * once. */
+#define GATHERS_EIGHT
+INLINE void gather_eight(const real *rows, const int j[LANES], vec r[8])
+{
+  for (int k = 0; k < 8; k++) {
+#if LANES == 16
+    const int *at = j + k + k / 4 * 4;
+    const __m256 low = _mm256_loadu_ps(rows + 8 * (long) at[0]);
+    const __m256 high = _mm256_loadu_ps(rows + 8 * (long) at[4]);
+    r[k] = _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
+#else
+    r[k] = load_any(rows + 8 * (long) j[k]);
+#endif
+  }
+  columns_of_eight(r);
+}
 #endif
 
 #if LANES == 16
@@ -101,13 +108,7 @@ static const real row_of_lane[LANES] = {0, 2, 4, 6, 1, 3, 5, 7, 8, 10, 12, 14, 9
 INLINE void load_rows_of_eight(const real *rows, vec r[8])
 {
   for (int k = 0; k < 8; k++) r[k] = load_any(rows + LANES * k);
-  transpose(r);
-  transpose(r + 4);
-  for (int c = 0; c < 4; c++) {
-    const vec a = r[c], b = r[4 + c];
-    r[c] = _mm512_shuffle_f32x4(a, b, 0x88);
-    r[4 + c] = _mm512_shuffle_f32x4(a, b, 0xdd);
-  }
+  columns_of_eight(r);
 }
 
 INLINE void add_to_rows_of_four(real *rows, vec column[4])
