@@ -1,6 +1,7 @@
 #include "sd_sph_tension.h"
 
 #include "sd_constants.h"
+#include "sd_interval.h"
 #include "sd_linear.h"
 #include "sd_sph_symmetric.h"
 #include "sd_sph_tension_internal.h"
@@ -50,18 +51,12 @@ void sd_sph_surface_make(sd_sph_kernel kernel, int dimension, double h, sd_sph_s
 
 double sd_sph_depth(const sd_sph_surface *s, double S)
 {
-  int low = 0, high = SD_SPH_DEPTHS - 1;
-  if (!(S > s->S0[low])) return 0.0;
-  if (S >= s->S0[high]) return 2.0 * s->h;
-  while (high - low > 1) {
-    const int middle = (low + high) / 2;
-    if (s->S0[middle] <= S)
-      low = middle;
-    else
-      high = middle;
-  }
-  const double part = (S - s->S0[low]) / (s->S0[high] - s->S0[low]);
-  return (low + part) * 2.0 * s->h / (SD_SPH_DEPTHS - 1);
+  enum { INTERVALS = SD_SPH_DEPTHS - 1 };
+  if (!(S > s->S0[0])) return 0.0;
+  if (S >= s->S0[INTERVALS]) return 2.0 * s->h;
+  const int k = sd_interval(s->S0, INTERVALS, S);
+  const double part = (S - s->S0[k]) / (s->S0[k + 1] - s->S0[k]);
+  return (k + part) * 2.0 * s->h / INTERVALS;
 }
 
 static double beta_at(const sd_sph_surface *s, double z)

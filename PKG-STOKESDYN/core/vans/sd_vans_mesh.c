@@ -1,5 +1,7 @@
 #include "sd_vans_grains.h"
 
+#include "sd_interval.h"
+
 int sd_vans_slice_of(const sd_vans_mesh *mesh, double z)
 {
   const int N = mesh->ncell;
@@ -9,14 +11,5 @@ int sd_vans_slice_of(const sd_vans_mesh *mesh, double z)
     const double s = height / mesh->dz;
     return s >= N ? N : (int) s;
   }
-  if (height >= mesh->edge[N]) return N;
-  int lo = 0, hi = N; /* halved; edge[lo] <= height < edge[hi] */
-  while (hi - lo > 1) {
-    const int mid = (lo + hi) / 2;
-    if (mesh->edge[mid] <= height)
-      lo = mid;
-    else
-      hi = mid;
-  }
-  return lo;
+  return height >= mesh->edge[N] ? N : sd_interval(mesh->edge, N, height);
 }

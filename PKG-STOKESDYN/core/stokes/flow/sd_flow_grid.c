@@ -1,5 +1,7 @@
 #include "sd_flow_grid_internal.h"
 
+#include "sd_interval.h"
+
 #include <math.h>
 
 /* Nodes count as even when none is off its place by more than this part of a cell: the weight of a
@@ -27,15 +29,7 @@ static inline int cell_of(const sd_grid_axis *axis, double x)
     const int cell = (int) ((x - axis->at[0]) * axis->density);
     return cell < axis->n - 1 ? cell : axis->n - 2;
   }
-  int low = 0, high = axis->n - 1;
-  while (high - low > 1) {
-    const int middle = (low + high) / 2;
-    if (axis->at[middle] <= x)
-      low = middle;
-    else
-      high = middle;
-  }
-  return low;
+  return sd_interval(axis->at, axis->n - 1, x);
 }
 
 /* Puts x where the axis has it. held: it is beyond an end whose value is held. */
