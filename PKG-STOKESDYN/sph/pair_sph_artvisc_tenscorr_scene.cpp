@@ -1,11 +1,12 @@
 /* Of pair_style sph/artVisc/tensCorr: who takes part in a run, and what goes with what. */
 #include "pair_sph_artvisc_tenscorr.h"
 
+#include "compute_sph_energy.h"
 #include "fix_nve_sph.h"
 #include "fix_sph_grains.h"
+#include "fix_sph_inlet.h"
+#include "fix_sph_outlet.h"
 #include "fix_sph_settings.h"
-#include "compute_sph_energy.h"
-#include "fix_sph_opening.h"
 #include "fix_sph_shift.h"
 #include "fix_sph_tension.h"
 #include "fix_wall_sph.h"

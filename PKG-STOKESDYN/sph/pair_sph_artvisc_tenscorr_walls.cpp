@@ -2,7 +2,8 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix_sph_grains.h"
-#include "fix_sph_opening.h"
+#include "fix_sph_inlet.h"
+#include "fix_sph_outlet.h"
 #include "fix_sph_settings.h"
 #include "fix_wall_sph.h"
 #include "keywords.h"
