@@ -349,8 +349,9 @@ void FixSphTension::keep_momentum()
   const int mine = sd_sph_sum_drops(&film, parent.data(), name.data(), mass.data(), held.data(), F.data(),
                                     drops.data(), place.data());
   std::vector<sd_sph_drop> all = from_all(world, std::vector<sd_sph_drop>(drops.begin(), drops.begin() + mine));
-  ndrops = sd_sph_keep_momentum(&film, parent.data(), place.data(), mass.data(), mine, drops.data(),
-                                (int) all.size(), all.data(), F.data(), sum);
+  ndrops = sd_sph_join_drops((int) all.size(), all.data(), sum);
+  sd_sph_find_excess(ndrops, all.data(), mine, drops.data());
+  sd_sph_keep_momentum(&film, parent.data(), place.data(), mass.data(), drops.data(), F.data());
   for (int i = 0; i < nlocal; i++)
     for (int d = 0; d < 3; d++) atom->f[i][d] += F[3 * (size_t) i + d];
 }

@@ -125,24 +125,30 @@ static int drops_add_up(int count, sd_sph_drop *drops)
   return last + 1;
 }
 
-int sd_sph_keep_momentum(const sd_sph_film *f, int *parent, const int *place, const double *mass, int count,
-                         sd_sph_drop *mine, int all_count, sd_sph_drop *everywhere, double *F, double sum[3])
+int sd_sph_join_drops(int parts, sd_sph_drop *drops, double sum[3])
 {
-  qsort(everywhere, (size_t) all_count, sizeof(sd_sph_drop), by_name);
-  const int drops = drops_add_up(all_count, everywhere);
+  qsort(drops, (size_t) parts, sizeof(sd_sph_drop), by_name);
+  const int count = drops_add_up(parts, drops);
   memset(sum, 0, 3 * sizeof(double));
-  for (int k = 0; k < drops; k++)
-    for (int d = 0; d < 3 && everywhere[k].held > 0.0; d++) sum[d] += everywhere[k].F[d];
-  /* F of mine becomes the force per mass that is given back */
-  for (int k = 0; k < count; k++) {
-    const sd_sph_drop *whole =
-        bsearch(&mine[k], everywhere, (size_t) drops, sizeof(sd_sph_drop), by_name);
+  for (int k = 0; k < count; k++)
+    for (int d = 0; d < 3 && drops[k].held > 0.0; d++) sum[d] += drops[k].F[d];
+  return count;
+}
+
+void sd_sph_find_excess(int count, const sd_sph_drop *drops, int here, sd_sph_drop *mine)
+{
+  for (int k = 0; k < here; k++) {
+    const sd_sph_drop *whole = bsearch(&mine[k], drops, (size_t) count, sizeof(sd_sph_drop), by_name);
     for (int d = 0; d < 3; d++) mine[k].F[d] = whole->held > 0.0 ? 0.0 : whole->F[d] / whole->mass;
   }
+}
+
+void sd_sph_keep_momentum(const sd_sph_film *f, int *parent, const int *place, const double *mass,
+                          const sd_sph_drop *excess, double *F)
+{
   for (int i = 0; i < f->list->n; i++) {
     if (!is_fluid(f, i)) continue;
-    const sd_sph_drop *drop = &mine[place[drops_root_of(parent, i)]];
+    const sd_sph_drop *drop = &excess[place[drops_root_of(parent, i)]];
     for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] -= mass[i] * drop->F[d];
   }
-  return drops;
 }

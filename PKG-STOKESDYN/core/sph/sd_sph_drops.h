@@ -30,11 +30,17 @@ typedef struct {
 int sd_sph_sum_drops(const sd_sph_film *f, int *parent, const double *name, const double *mass,
                      const double *held, const double *F, sd_sph_drop *out, int *place);
 
-/* Takes from F [3 list->n] what the drops have too much. mine [count]: of sd_sph_sum_drops; everywhere
- * [all_count]: those of all ranks, which are sorted and added up by name. Returns the number of drops; of all
- * of them, sum [3]: the force that is left, on those that are held. */
-int sd_sph_keep_momentum(const sd_sph_film *f, int *parent, const int *place, const double *mass, int count,
-                         sd_sph_drop *mine, int all_count, sd_sph_drop *everywhere, double *F, double sum[3]);
+/* Of the parts of drops of all ranks: sorts them and adds them up by name; returns the number of drops. sum
+ * [3]: the force on those that are held, which keep it. */
+int sd_sph_join_drops(int parts, sd_sph_drop *drops, double sum[3]);
+
+/* mine [here]: of sd_sph_sum_drops. F of each becomes the force per mass that the whole drop among drops
+ * [count] has too much: all of it, or 0 where it is held. */
+void sd_sph_find_excess(int count, const sd_sph_drop *drops, int here, sd_sph_drop *mine);
+
+/* Takes that from F [3 list->n]; place: of sd_sph_sum_drops. */
+void sd_sph_keep_momentum(const sd_sph_film *f, int *parent, const int *place, const double *mass,
+                          const sd_sph_drop *excess, double *F);
 
 SD_END_C
 #endif

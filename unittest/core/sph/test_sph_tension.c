@@ -485,7 +485,9 @@ static void a_free_drop_keeps_its_momentum_and_a_held_one_is_left_alone(void **s
   const int count = sd_sph_sum_drops(&s->film, parent, name, mass, held, F, mine, place);
   assert_int_equal(count, 2);
   memcpy(everywhere, mine, sizeof(sd_sph_drop) * 2);
-  assert_int_equal(sd_sph_keep_momentum(&s->film, parent, place, mass, count, mine, 2, everywhere, F, sum), 2);
+  assert_int_equal(sd_sph_join_drops(2, everywhere, sum), 2);
+  sd_sph_find_excess(2, everywhere, count, mine);
+  sd_sph_keep_momentum(&s->film, parent, place, mass, mine, F);
   double free_sum[3] = {0.0}, held_sum[3] = {0.0};
   for (int i = 0; i < s->n; i++)
     for (int d = 0; d < 3; d++) {
@@ -555,7 +557,9 @@ static void parts_of_a_drop_on_two_ranks_are_one(void **state)
   const int count = sd_sph_sum_drops(&s->film, parent, name, mass, held, F, mine, place);
   everywhere[0] = (sd_sph_drop){5.0, {-1.0 * s->n, 0.0, 0.0}, 3.0, 0.0};
   everywhere[1] = mine[0];
-  assert_int_equal(sd_sph_keep_momentum(&s->film, parent, place, mass, count, mine, 2, everywhere, F, sum), 1);
+  assert_int_equal(sd_sph_join_drops(2, everywhere, sum), 1);
+  sd_sph_find_excess(1, everywhere, count, mine);
+  sd_sph_keep_momentum(&s->film, parent, place, mass, mine, F);
   for (int i = 0; i < s->n; i++) total += F[3 * i];
   CHECK_NEAR(total, 1.0 * s->n, 1e-12);    // the two parts balance: nothing is given back
 }
