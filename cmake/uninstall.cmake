@@ -1,4 +1,5 @@
-# Removes the files of the last installation, and folders that are empty without them:  cmake -D MANIFEST=FILE -P uninstall.cmake
+# Removes the files of the last installation, and folders that are empty without them:  cmake -D MANIFEST=FILE -P
+# uninstall.cmake
 cmake_minimum_required(VERSION 3.20)
 if(NOT EXISTS "${MANIFEST}")
   message(FATAL_ERROR "uninstall: there is no ${MANIFEST}; nothing was installed from this build folder")

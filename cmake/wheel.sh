@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Makes the wheel that a release publishes, which carries LAPACK and FFTW and so needs no compiler, and tries it: two lines of pip in an
-# empty virtual environment, the README's script, the right answer.
+# Makes the wheel that a release publishes, which carries LAPACK and FFTW and so needs no compiler, and tries it: two
+# lines of pip in an empty virtual environment, the README's script, the right answer.
 #   wheel.sh [FOLDER]             the wheel lands in FOLDER, unless told build/wheel; tried on this machine
 #   wheel.sh [FOLDER] --from FILE     from a wheel of 'pip wheel --no-deps ./PKG-STOKESDYN'
-#   wheel.sh [FOLDER] --bare      tried in a Debian 12 that has python3-venv and nothing else as well (debootstrap, root)
+#   wheel.sh [FOLDER] --bare      tried in a Debian 12 that has python3-venv and nothing else as well
+#                               (debootstrap, root)
 # The wheel runs where the C library is at least as new as this machine's: publish what an old distribution has made.
 set -euo pipefail
 top=$(cd "$(dirname "$0")/.." && pwd)
@@ -57,7 +58,8 @@ env -u LAMMPS_PLUGIN_PATH -u LD_LIBRARY_PATH -u PYTHONPATH OMP_NUM_THREADS=1 bas
 [ -n "$bare" ] || exit 0
 
 echo "[wheel] tried in a bare Debian 12"
-debootstrap --variant=minbase --include=python3-venv,ca-certificates bookworm "$scratch/debian" > "$scratch/debootstrap.log" 2>&1 ||
+debootstrap --variant=minbase --include=python3-venv,ca-certificates bookworm "$scratch/debian" \
+  > "$scratch/debootstrap.log" 2>&1 ||
   { tail "$scratch/debootstrap.log" >&2; exit 1; }
 mkdir "$scratch/debian/try"
 cp "$scratch/$wheel" "$scratch/in.rod" "$scratch/try.sh" "$scratch/debian/try"

@@ -16,7 +16,8 @@ class Checks:
         self.ok = self.missed = 0
 
     def near(self, what, value, wanted, tolerance):
-        return self._line(abs(value - wanted) <= tolerance, f"{what}: {value:.8g} (wanted {wanted:.8g} +- {tolerance:.2g})", value)
+        return self._line(abs(value - wanted) <= tolerance,
+                          f"{what}: {value:.8g} (wanted {wanted:.8g} +- {tolerance:.2g})", value)
 
     def below(self, what, value, limit):
         return self._line(value <= limit, f"{what}: {value:.8g} (wanted at most {limit:.8g})", value)
@@ -37,5 +38,6 @@ class Checks:
     def finish(self):
         if self.ok + self.missed == 0:
             self.holds("no figure was looked at", False)
-        print(f"{self.ok} of {self.ok + self.missed} figures hold" + (f", {self.missed} MISSED" if self.missed else ""), flush=True)
+        print(f"{self.ok} of {self.ok + self.missed} figures hold" + (f", {self.missed} MISSED" if self.missed else ""),
+              flush=True)
         return 1 if self.missed else 0

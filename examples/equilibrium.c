@@ -1,5 +1,5 @@
-/* Hard spheres of radius 1 at equilibrium in a periodic cube, by Metropolis' method: a sphere is displaced at random and stays
- * there unless it overlaps another one. */
+/* Hard spheres of radius 1 at equilibrium in a periodic cube, by Metropolis' method: a sphere is displaced at random
+ * and stays there unless it overlaps another one. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

@@ -25,16 +25,17 @@ def wall_drag(gap):
 
 
 def sphere_at_wall():
-    """Of a lone sphere of radius 1 above a plane wall, by gap: resistances over 6 pi eta a (normal, parallel), 8 pi eta a^2 (coupling)
-    and 8 pi eta a^3 (roll, spin)"""
+    """Of a lone sphere of radius 1 above a plane wall, by gap: resistances over 6 pi eta a (normal, parallel), 8 pi eta
+    a^2 (coupling) and 8 pi eta a^3 (roll, spin)"""
     rows = read_table(WALLS / "wall_functions.csv")
-    names = {"gap": "gap_over_a", **{name: name + "_exact" for name in ("normal", "parallel", "coupling", "roll", "spin")}}
+    names = {"gap": "gap_over_a",
+             **{name: name + "_exact" for name in ("normal", "parallel", "coupling", "roll", "spin")}}
     return {name: np.array([float(row[column]) for row in rows]) for name, column in names.items()}
 
 
 def sphere_in_shear():
-    """The same in the flow u_x = z: parallel, coupling, roll, and of a sphere that rests force over 6 pi eta a h, torque over
-    4 pi eta a^3, h the height of its centre"""
+    """The same in the flow u_x = z: parallel, coupling, roll, and of a sphere that rests force over 6 pi eta a h,
+    torque over 4 pi eta a^3, h the height of its centre"""
     rows = read_table(WALLS / "wall_shear.csv")
     names = {"gap": "gap_over_a", "parallel": "parallel", "coupling": "coupling", "roll": "roll",
              "force": "shear_force_over_6_pi_eta_a_h_rate", "torque": "shear_torque_over_4_pi_eta_a3_rate"}
@@ -45,4 +46,5 @@ def along_wall(exact, force, torque):
     """U and W of a free sphere under a force along x over 6 pi eta a and a torque about y over 8 pi eta a^3"""
     F, T = np.broadcast_arrays(force, torque)
     det = exact["parallel"] * exact["roll"] - 4 / 3 * exact["coupling"]**2
-    return (exact["roll"] * F - 4 / 3 * exact["coupling"] * T) / det, (exact["parallel"] * T - exact["coupling"] * F) / det
+    return (exact["roll"] * F - 4 / 3 * exact["coupling"] * T) / det, (exact["parallel"] * T - exact["coupling"] *
+                                                                       F) / det

@@ -17,7 +17,8 @@ def write(pictures, path, colours=16, each=70):
     """pictures: images of one size; each: milliseconds, where the first and the last one stay longer."""
     palette = pictures[len(pictures) // 2].quantize(colours)
     first, *rest = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in pictures]
-    first.save(path, save_all=True, append_images=rest, duration=[600] + [each] * (len(rest) - 1) + [1500], loop=0, optimize=True)
+    first.save(path, save_all=True, append_images=rest, duration=[600] + [each] * (len(rest) - 1) + [1500], loop=0,
+               optimize=True)
 
 
 def frames(path):

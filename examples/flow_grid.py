@@ -16,8 +16,9 @@ NAMES = ("x", "y", "z", "time")
 
 
 def write(path, axes, velocity, viscosity=None, times=None, beyond=None, binary=False):
-    """axes: coordinates of the nodes along x, y, z, a list each. velocity: [nt, nz, ny, nx, 3], without nt if there are no times;
-    viscosity: the same without the 3. beyond: {"x": "clamp" or "periodic", ...}; "error" where it does not say."""
+    """axes: coordinates of the nodes along x, y, z, a list each. velocity: [nt, nz, ny, nx, 3], without nt if there are
+    no times; viscosity: the same without the 3. beyond: {"x": "clamp" or "periodic", ...}; "error" where it does not
+    say."""
     axes = [np.atleast_1d(np.asarray(axis, float)) for axis in axes]
     times = None if times is None else np.atleast_1d(np.asarray(times, float))
     shape = (() if times is None else (len(times),)) + tuple(len(axis) for axis in axes[::-1])
@@ -29,7 +30,8 @@ def write(path, axes, velocity, viscosity=None, times=None, beyond=None, binary=
     for name, nodes in zip(NAMES, axes + ([] if times is None else [times])):
         even = np.linspace(nodes[0], nodes[-1], len(nodes))
         told = nodes[[0, -1]] if len(nodes) > 2 and np.abs(nodes - even).max() <= 1e-14 * np.abs(nodes).max() else nodes
-        header.append(" ".join([name, str(len(nodes)), *(repr(float(c)) for c in told), (beyond or {}).get(name, "error")]))
+        header.append(" ".join([name, str(len(nodes)), *(repr(float(c)) for c in told),
+                                (beyond or {}).get(name, "error")]))
     header += ["columns ux uy uz" + " eta" * (viscosity is not None), "rows " + ("binary" if binary else "text")]
     with open(path, "wb") as out:
         out.write(("\n".join(header) + "\n").encode())
@@ -39,7 +41,7 @@ def write(path, axes, velocity, viscosity=None, times=None, beyond=None, binary=
             np.savetxt(out, rows, fmt="%.17g")
 
 
-# --- from VTK ------------------------------------------------------------------------------------------------------------------
+# --- from VTK ---------------------------------------------------------------------------------------------------------
 
 def read_vtk(path):
     """Whatever VTK reads: .vtu, .vts, .vti, ..., .vtm (its first block), and the old .vtk."""
@@ -61,7 +63,8 @@ def at_points(data, name, path):
     if data.GetPointData().HasArray(name):
         return data
     if not data.GetCellData().HasArray(name):
-        known = [part.GetArrayName(k) for part in (data.GetPointData(), data.GetCellData()) for k in range(part.GetNumberOfArrays())]
+        known = [part.GetArrayName(k) for part in (data.GetPointData(), data.GetCellData())
+                 for k in range(part.GetNumberOfArrays())]
         sys.exit(f"flow_grid.py: '{path}' has no field '{name}'; it has {', '.join(sorted(set(known))) or 'none'}")
     convert = vtk.vtkCellDataToPointData()
     convert.SetInputData(data)
@@ -99,12 +102,15 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs="+", help="one, or one for each time")
     parser.add_argument("-o", "--out", required=True)
-    parser.add_argument("--nodes", type=int, nargs=3, required=True, metavar=("NX", "NY", "NZ"), help="1: nothing varies along it")
-    parser.add_argument("--box", type=float, nargs=6, metavar=("XLO", "XHI", "YLO", "YHI", "ZLO", "ZHI"), help="default: the mesh")
+    parser.add_argument("--nodes", type=int, nargs=3, required=True, metavar=("NX", "NY", "NZ"),
+                        help="1: nothing varies along it")
+    parser.add_argument("--box", type=float, nargs=6, metavar=("XLO", "XHI", "YLO", "YHI", "ZLO", "ZHI"),
+                        help="default: the mesh")
     parser.add_argument("--velocity", default="U", help="name of the field")
     parser.add_argument("--viscosity", help="name of the field; default: none is written")
     parser.add_argument("--times", type=float, nargs="+")
-    parser.add_argument("--beyond", nargs=2, action="append", default=[], metavar=("AXIS", "WHAT"), help="clamp or periodic")
+    parser.add_argument("--beyond", nargs=2, action="append", default=[], metavar=("AXIS", "WHAT"),
+                        help="clamp or periodic")
     parser.add_argument("--binary", action="store_true")
     given = parser.parse_args()
     if len(given.files) != len(given.times or [0.0]):

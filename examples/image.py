@@ -8,7 +8,8 @@ TYPES = {"Float64": "<f8", "UInt8": "u1"}
 
 
 class Image:
-    """Of a file: origin, spacing, n (points along x, y, z), time, and arrays by name: [nz, ny, nx] or [nz, ny, nx, 3]."""
+    """Of a file: origin, spacing, n (points along x, y, z), time, and arrays by name: [nz, ny, nx] or [nz, ny, nx,
+    3]."""
 
     def __init__(self, path):
         root = xml.parse(path).getroot()

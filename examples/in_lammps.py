@@ -1,5 +1,5 @@
-"""One LAMMPS in this process, which gets scene after scene of unit spheres, for examples that want the velocities or the stress of one
-moment. 6 pi eta = 1."""
+"""One LAMMPS in this process, which gets scene after scene of unit spheres, for examples that want the velocities or
+the stress of one moment. 6 pi eta = 1."""
 from runs import np
 
 SHEARS = ("xy", "xz", "yz")
@@ -16,13 +16,14 @@ class InLammps:
             self.lmp.command(line.strip())
 
     def place(self, x, keywords, edge=None, molecule=0, tolerance=1e-6, radius=1.0):
-        """Spheres at x [n, 3]; keywords: of the pair style, besides viscosity and tolerance; edge: of the periodic cube, or None: open;
-        molecule, radius: a number, or one for each"""
+        """Spheres at x [n, 3]; keywords: of the pair style, besides viscosity and tolerance; edge: of the periodic
+        cube, or None: open; molecule, radius: a number, or one for each"""
         self.n = len(x)
         lo, hi = (0.0, edge) if edge else (x.min() - 5, x.max() + 5)
         rows = "".join(f"{i + 1} 1 {p[0]:.17g} {p[1]:.17g} {p[2]:.17g} {2 * a:.17g} 1.0 {m}\n" for i, (p, m, a) in
                        enumerate(zip(x.tolist(), np.broadcast_to(molecule, self.n), np.broadcast_to(radius, self.n))))
-        self.data.write_text(f"spheres\n\n{self.n} atoms\n1 atom types\n\n" + "".join(f"{lo:.17g} {hi:.17g} {c}lo {c}hi\n" for c in "xyz") +
+        self.data.write_text(f"spheres\n\n{self.n} atoms\n1 atom types\n\n" +
+                             "".join(f"{lo:.17g} {hi:.17g} {c}lo {c}hi\n" for c in "xyz") +
                              ("0 0 0 xy xz yz\n" if edge else "") + "\nAtoms\n\n" + rows)
         self.commands(f"""
             clear
@@ -63,8 +64,8 @@ class InLammps:
         return np.array(self.lmp.numpy.extract_atom("v"))[:self.n][self.order()]
 
     def stress(self, plane, rate=1.0):
-        """Of a box that is sheared, without forces on the spheres; keyword fluid_velocity box, edge given: 18 numbers of compute
-        stokes_dynamics/stress, over the viscosity and the rate"""
+        """Of a box that is sheared, without forces on the spheres; keyword fluid_velocity box, edge given: 18 numbers
+        of compute stokes_dynamics/stress, over the viscosity and the rate"""
         self.push(np.zeros((self.n, 3)))
         self.commands(f"""
             fix shear all deform 1 {plane} erate {rate} remap none
@@ -88,14 +89,15 @@ class InLammps:
         return v - x @ np.asarray(G).T
 
     def carried(self, G):
-        """Velocities [n, 3] in the linear flow G x, without forces, less that flow; keyword fluid_velocity v_ux v_uy v_uz"""
+        """Velocities [n, 3] in the linear flow G x, without forces, less that flow; keyword fluid_velocity v_ux v_uy
+        v_uz"""
         self.flow(G)
         self.lmp.command("run 0")
         return self.slip(G)
 
     def strained(self, G):
-        """The same, and first moments [n, 3, 3] of the spheres' forces and films on the fluid, over that of a lone sphere in a unit rate
-        of strain; with multiblobs"""
+        """The same, and first moments [n, 3, 3] of the spheres' forces and films on the fluid, over that of a lone
+        sphere in a unit rate of strain; with multiblobs"""
         self.commands("""
             compute S all stokes_dynamics/stress
             dump S all custom 1 /dev/null c_S[1]""")

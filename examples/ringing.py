@@ -1,5 +1,5 @@
-"""The mode n = 2 of a viscous drop in two dimensions: its exact frequency and damping, and those of a recorded amplitude; and the rate at
-which a wave on a jet grows."""
+"""The mode n = 2 of a viscous drop in two dimensions: its exact frequency and damping, and those of a recorded
+amplitude; and the rate at which a wave on a jet grows."""
 import numpy as np
 
 
@@ -17,8 +17,9 @@ def slope(q, n=2):
 
 
 def mode(nu, R=1.0):
-    """Frequency and damping of small amplitudes, rho = sigma = 1: a potential r^2 and a stream function I_2(q r), q^2 = s/nu, no shear stress
-    at the surface and the pressure of its curvature. The complex rate s is found by Newton's method from that of little viscosity."""
+    """Frequency and damping of small amplitudes, rho = sigma = 1: a potential r^2 and a stream function I_2(q r), q^2 =
+    s/nu, no shear stress at the surface and the pressure of its curvature. The complex rate s is found by Newton's
+    method from that of little viscosity."""
     nu = nu / R**0.5
 
     def residual(s, n=2):
@@ -36,7 +37,8 @@ def mode(nu, R=1.0):
 
 
 def fitted(t, amplitude, w, g):
-    """Frequency and damping of exp(-g t) (a sin w t + b cos w t) + d, least squares by Gauss's and Newton's method from w and g"""
+    """Frequency and damping of exp(-g t) (a sin w t + b cos w t) + d, least squares by Gauss's and Newton's method from
+    w and g"""
     a, b, d = 0.0, 0.0, 0.0
     for k in range(100):
         fade, sin, cos = np.exp(-g * t), np.sin(w * t), np.cos(w * t)
@@ -62,7 +64,7 @@ def bessel(n, x):
 
 
 def growth(k, nu, R=1.0):
-    """Rate of the wave number k on a jet, rho = sigma = 1: Rayleigh's, k R I_1/I_0 (1 - k^2 R^2)/R^3 as its square, and the friction of a
-    thin jet, 3 nu k^2 (Weber)"""
+    """Rate of the wave number k on a jet, rho = sigma = 1: Rayleigh's, k R I_1/I_0 (1 - k^2 R^2)/R^3 as its square, and
+    the friction of a thin jet, 3 nu k^2 (Weber)"""
     x = k * R
     return (x * bessel(1, x) / bessel(0, x) * (1 - x * x) / R**3 + (1.5 * nu * k * k) ** 2) ** 0.5 - 1.5 * nu * k * k

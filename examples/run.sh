@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
-# Command 1 of the README: set-up (packages, LAMMPS, plugin), then examples. From any folder, with nothing set beforehand.
+# Command 1 of the README: set-up (packages, LAMMPS, plugin), then examples. From any folder, with
+# nothing set beforehand.
 #   run.sh              examples/sedimentation; tables and pictures go to build/examples/sedimentation
 #   run.sh --update     also refreshes those that are kept in examples/sedimentation
-#   run.sh all          every example, one after the other, and a table of their figures at the end; exits with 1 when one is missed
+#   run.sh all          every example, one after the other, and a table of their figures at the end; exits with 1 when
+#                       one is missed
 #   run.sh NAME ...     these examples, with the same table; first_look and clump_resistance need no LAMMPS
 set -euo pipefail
-export PATH=${PATH:-/usr/local/bin:/usr/bin:/bin}:/usr/local/sbin:/usr/sbin:/sbin      # sbin: dpkg looks for its tools there
+# sbin: dpkg looks for its tools there
+export PATH=${PATH:-/usr/local/bin:/usr/bin:/bin}:/usr/local/sbin:/usr/sbin:/sbin
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 here=$top/examples
 
@@ -52,7 +55,8 @@ if [ ${#names[@]} = 0 ]; then
   exit $status
 fi
 
-# Each run.py ends with lines "ok" and "MISSED" (checks.py) and exits with 1 when a figure is missed, with 1 as well when it fails.
+# Each run.py ends with lines "ok" and "MISSED" (checks.py) and exits with 1 when a figure is missed, with 1 as well
+# when it fails.
 mkdir -p "$top/build/examples"
 table="" bad=0
 for name in "${names[@]}"; do

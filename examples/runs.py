@@ -1,4 +1,5 @@
-"""What the scripts of the examples share: a python with numpy and matplotlib, MPI, programs that must be there, where results go."""
+"""What the scripts of the examples share: a python with numpy and matplotlib, MPI, programs that must be there, where
+results go."""
 import argparse
 import contextlib
 import csv
@@ -37,8 +38,9 @@ def need(*programs):
 
 
 def options(script, text, **more):
-    """What every run.py takes: --out DIR, where all that it makes goes (a folder of build/examples unless told), made if need be;
-    --update, which also refreshes what is kept beside run.py. more: names of further options, with their defaults."""
+    """What every run.py takes: --out DIR, where all that it makes goes (a folder of build/examples unless told), made
+    if need be; --update, which also refreshes what is kept beside run.py. more: names of further options, with their
+    defaults."""
     name = pathlib.Path(script).resolve().parent.name
     parser = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=pathlib.Path, default=TOP / "build" / "examples" / name)
@@ -57,7 +59,8 @@ LISTENED_TO = []      # files to which runs of LAMMPS print, the latest one last
 
 
 def last_row(path):
-    """Of thermo output, as far as LAMMPS has written it: the latest line that begins with a step and has one more number"""
+    """Of thermo output, as far as LAMMPS has written it: the latest line that begins with a step and has one more
+    number"""
     with open(path, "rb") as file:
         file.seek(max(0, os.path.getsize(path) - 4000))
         lines = file.read().decode(errors="replace").splitlines()
@@ -91,22 +94,23 @@ def listening(path):
 
 
 def finished(name, command, cwd):
-    """What the command printed in cwd, or the end with the last lines of that. name: of the example. Several at once would trip over
-    each other in Open MPI's folder of temporary files."""
+    """What the command printed in cwd, or the end with the last lines of that. name: of the example. Several at once
+    would trip over each other in Open MPI's folder of temporary files."""
     with tempfile.TemporaryDirectory(prefix="sd") as scratch:
         path = pathlib.Path(scratch) / "printed"
         with path.open("w") as printed, listening(path):
-            done = subprocess.run(command, cwd=cwd, env=dict(os.environ, TMPDIR=scratch), stdin=subprocess.DEVNULL, stdout=printed,
-                                  stderr=subprocess.STDOUT)
+            done = subprocess.run(command, cwd=cwd, env=dict(os.environ, TMPDIR=scratch), stdin=subprocess.DEVNULL,
+                                  stdout=printed, stderr=subprocess.STDOUT)
         said = path.read_text(errors="replace")
-    if done.returncode != 0 or re.search("^ERROR", said, re.M):    # at the beginning of a line: so LAMMPS speaks, MPI does otherwise
+    # at the beginning of a line: so LAMMPS speaks, MPI does otherwise
+    if done.returncode != 0 or re.search("^ERROR", said, re.M):
         sys.exit("\n".join(said.splitlines()[-20:]) + f"\n{name}: {' '.join(command)} failed in {cwd}")
     return said
 
 
 def thermo(said, first):
-    """Rows [samples, columns] of the table of thermo output whose header begins with the words `first`, in what a LAMMPS printed. Older
-    LAMMPS put one space between the words, newer ones pad them to columns."""
+    """Rows [samples, columns] of the table of thermo output whose header begins with the words `first`, in what a
+    LAMMPS printed. Older LAMMPS put one space between the words, newer ones pad them to columns."""
     header = re.search(r"^ *" + r" +".join(first.split()) + r"\b.*\n", said, re.M)
     rows = said[header.end():said.index("\nLoop time", header.end())].splitlines()
     return np.array([row.split() for row in rows if re.match(r" *\d", row)], float)

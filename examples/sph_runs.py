@@ -1,7 +1,7 @@
 """What the scripts of the SPH examples share: running an input, reading its thermo output, profiles and dumps.
 
-Each ends with a line "ok" or "MISSED" for every figure of its README, and the exit status. With --quick only those of the
-shortest runs."""
+Each ends with a line "ok" or "MISSED" for every figure of its README, and the exit status. With --quick only those of
+the shortest runs."""
 import os
 import subprocess
 import sys
@@ -13,7 +13,8 @@ QUICK = "--quick" in sys.argv
 
 
 def lmp(folder, name, tag, **variables):
-    """Runs folder/in.name with lmp from the PATH (. build/env.sh) in build/examples/<name>; returns the thermo table: columns by name."""
+    """Runs folder/in.name with lmp from the PATH (. build/env.sh) in build/examples/<name>; returns the thermo table:
+    columns by name."""
     out = os.path.join(TOP, "build", "examples", name)
     os.makedirs(out, exist_ok=True)
     log = "log.%s.%s" % (name, tag)
@@ -45,7 +46,8 @@ def thermo(path):
 
 
 def profiles(path):
-    """Blocks of a fix ave/chunk file: list of (step, rows) without empty layers. Columns: layer, coordinate, count, values."""
+    """Blocks of a fix ave/chunk file: list of (step, rows) without empty layers. Columns: layer, coordinate, count,
+    values."""
     blocks = []
     with open(path) as f:
         for line in f:
@@ -77,7 +79,8 @@ def pyplot():
 
 
 def keep(folder, out, picture, table, name="table.md"):
-    """Writes the table beside the picture (None: there is none); with --update both go to the example's own folder too."""
+    """Writes the table beside the picture (None: there is none); with --update both go to the example's own folder
+    too."""
     with open(os.path.join(out, name), "w") as f:
         f.write(table)
     print(table)

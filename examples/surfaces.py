@@ -1,4 +1,5 @@
-"""Closed surfaces of triangles, numpy alone: STL files and simple shapes, whether they are closed, what they hold, who is inside.
+"""Closed surfaces of triangles, numpy alone: STL files and simple shapes, whether they are closed, what they hold, who
+is inside.
 
 shapes/fill.py makes clumps of spheres of them, ship/particles.py walls, bodies and water for SPH."""
 import pathlib
@@ -14,7 +15,7 @@ class Error(Exception):
     """What is wrong with a shape, for whoever gave it."""
 
 
-# --- surfaces of triangles --------------------------------------------------------------------------------------------------
+# --- surfaces of triangles --------------------------------------------------------------------------------------------
 
 def read_stl(path, scale=1.0):
     """[n, 3, 3] corners of the triangles of an STL file"""
@@ -24,21 +25,24 @@ def read_stl(path, scale=1.0):
         raise Error(f"{path}: {why.strerror}") from None
     count = struct.unpack("<I", data[80:84])[0] if len(data) >= 84 else 0
     if len(data) == 84 + 50 * count and count:
-        rows = np.frombuffer(data, np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")]), count, 84)
+        rows = np.frombuffer(data, np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")]), count,
+                             84)
         return scale * rows["corners"].astype(float)
     words = data.decode("ascii", "replace").split()
     try:
         corners = [[float(word) for word in words[k + 1:k + 4]] for k, word in enumerate(words) if word == "vertex"]
         triangles = scale * np.array(corners).reshape(-1, 3, 3)
     except ValueError:
-        raise Error(f"{path}: neither a binary STL file (84 + 50 n bytes) nor an ASCII one with three numbers after each 'vertex'") from None
+        raise Error(f"{path}: neither a binary STL file (84 + 50 n bytes) nor an ASCII one with three numbers "
+                    "after each 'vertex'") from None
     if not len(triangles):
         raise Error(f"{path}: there is no triangle in it")
     return triangles
 
 
 def read(path, scale=1.0):
-    """The same of any file: an STL file by read_stl, others (OBJ, PLY, OFF, ...) by the module trimesh if it is installed"""
+    """The same of any file: an STL file by read_stl, others (OBJ, PLY, OFF, ...) by the module trimesh if it is
+    installed"""
     if pathlib.Path(path).suffix.lower() == ".stl":
         return read_stl(path, scale)
     try:
@@ -59,16 +63,19 @@ def write_stl(path, triangles):
 
 
 def numbered(triangles):
-    """The corners as [n, 3] numbers, equal for corners at the same place to 1e-6 of the size; triangles without area are left out"""
+    """The corners as [n, 3] numbers, equal for corners at the same place to 1e-6 of the size; triangles without area
+    are left out"""
     size = np.ptp(triangles.reshape(-1, 3), axis=0).max()
-    _, number = np.unique(np.round(triangles.reshape(-1, 3) / (1e-6 * size)).astype(np.int64), axis=0, return_inverse=True)
+    _, number = np.unique(np.round(triangles.reshape(-1, 3) / (1e-6 * size)).astype(np.int64), axis=0,
+                          return_inverse=True)
     number = number.reshape(-1, 3)
     good = (number[:, 0] != number[:, 1]) & (number[:, 1] != number[:, 2]) & (number[:, 2] != number[:, 0])
     return number[good], triangles[good]
 
 
 def closed(triangles, name):
-    """The triangles with normals that point outwards, or an error: each edge must belong to two triangles, once in each direction"""
+    """The triangles with normals that point outwards, or an error: each edge must belong to two triangles, once in each
+    direction"""
     if not np.isfinite(triangles).all():
         raise Error(f"{name}: a corner is not finite")
     number, triangles = numbered(triangles)
@@ -76,11 +83,14 @@ def closed(triangles, name):
     pairs, times = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
     open_edges, crossings = (times == 1).sum(), (times > 2).sum()
     if open_edges or crossings:
-        where = triangles.reshape(-1, 3)[np.argmax((number.ravel()[:, None] == pairs[np.argmax(times != 2)]).any(axis=1))]
-        raise Error(f"{name}: the surface is not closed: {open_edges} edges belong to one triangle only and {crossings} to more than two, "
-                    f"the first near {where.round(6).tolist()}. Fill its holes and join its parts (for example in MeshLab or Blender)")
+        where = triangles.reshape(-1,
+                                  3)[np.argmax((number.ravel()[:, None] == pairs[np.argmax(times != 2)]).any(axis=1))]
+        raise Error(f"{name}: the surface is not closed: {open_edges} edges belong to one triangle only and "
+                    f"{crossings} to more than two, the first near {where.round(6).tolist()}. Fill its holes and join "
+                    "its parts (for example in MeshLab or Blender)")
     if len(np.unique(edges, axis=0)) != len(edges):
-        raise Error(f"{name}: the triangles do not turn in one sense. Make their normals consistent (for example in MeshLab or Blender)")
+        raise Error(f"{name}: the triangles do not turn in one sense. Make their normals consistent (for example in "
+                    "MeshLab or Blender)")
     return triangles if volume_and_centre(triangles)[0] > 0 else triangles[:, ::-1]
 
 
@@ -91,11 +101,13 @@ def volume_and_centre(triangles):
 
 
 def inside(triangles, x, y, z, name="surface"):
-    """[nx, ny, nz] whether the nodes of a lattice lie in the closed surface. x, y, z: coordinates of its planes, increasing.
+    """[nx, ny, nz] whether the nodes of a lattice lie in the closed surface. x, y, z: coordinates of its planes,
+    increasing.
 
-    A ray goes up through each column of nodes. Where it enters through a triangle that faces down, the winding number grows by one, where it
-    leaves it falls; inside it is 1. Columns are shifted by 1e-7 of a spacing, so that no ray meets an edge. The two triangles at an edge
-    find the same number, with opposite sign, for the side on which the ray passes, so that it meets exactly one of them."""
+    A ray goes up through each column of nodes. Where it enters through a triangle that faces down, the winding number
+    grows by one, where it leaves it falls; inside it is 1. Columns are shifted by 1e-7 of a spacing, so that no ray
+    meets an edge. The two triangles at an edge find the same number, with opposite sign, for the side on which the ray
+    passes, so that it meets exactly one of them."""
     step = max(x[1] - x[0], y[1] - y[0])
     X, Y = x + 1.414e-7 * step, y + 0.732e-7 * step
     jump = np.zeros((len(x), len(y), len(z) + 1), int)
@@ -105,36 +117,40 @@ def inside(triangles, x, y, z, name="surface"):
         j0, j1 = np.searchsorted(Y, [low[1], high[1]])
         if i0 == i1 or j0 == j1:
             continue
-        sides = [_side(corners[k], corners[k - 2], X[i0:i1, None], Y[None, j0:j1]) for k in range(3)]     # of the edge against corner k - 1
+        # of the edge against corner k - 1
+        sides = [_side(corners[k], corners[k - 2], X[i0:i1, None], Y[None, j0:j1]) for k in range(3)]
         up = (sides[0] > 0) & (sides[1] > 0) & (sides[2] > 0)
         down = (sides[0] < 0) & (sides[1] < 0) & (sides[2] < 0)
         hit = np.nonzero(up | down)
         weight = np.array([sides[k][hit] for k in range(3)])
-        height = (weight[0] * corners[2, 2] + weight[1] * corners[0, 2] + weight[2] * corners[1, 2]) / weight.sum(axis=0)
+        height = (weight[0] * corners[2, 2] + weight[1] * corners[0, 2] + weight[2] * corners[1, 2]) / weight.sum(
+            axis=0)
         jump[hit[0] + i0, hit[1] + j0, np.searchsorted(z, height)] += np.where(up[hit], -1, 1)
     winding = np.cumsum(jump, axis=2)
     if winding[:, :, -1].any() or (winding < 0).any() or (winding > 1).any():
-        raise Error(f"{name}: parts of the surface lie in each other or cross, or a cavity has normals that point into the body. Join the "
-                    "parts (for example in MeshLab or Blender)")
+        raise Error(f"{name}: parts of the surface lie in each other or cross, or a cavity has normals that point into "
+                    "the body. Join the parts (for example in MeshLab or Blender)")
     return winding[:, :, :-1] == 1
 
 
 def _side(a, b, x, y):
-    """> 0 where (x, y) lies to the left of the line from a to b seen from above; the same number but for the sign from b to a"""
+    """> 0 where (x, y) lies to the left of the line from a to b seen from above; the same number but for the sign from
+    b to a"""
     if tuple(a) > tuple(b):
         return -_side(b, a, x, y)
     return (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])
 
 
 def winding_number(triangles, points):
-    """1 within and 0 outside a closed surface: the solid angle that it fills, seen from each point, over 4 pi (Van Oosterom & Strackee
-    1983). Slower than inside(), and another way to the same answer."""
+    """1 within and 0 outside a closed surface: the solid angle that it fills, seen from each point, over 4 pi (Van
+    Oosterom & Strackee 1983). Slower than inside(), and another way to the same answer."""
     total = np.zeros(len(points))
     for k, point in enumerate(points):
         a, b, c = (triangles - point).transpose(1, 0, 2)
         A, B, C = (np.linalg.norm(v, axis=1) for v in (a, b, c))
         dot = [np.einsum("ni,ni->n", *pair) for pair in ((a, b), (b, c), (c, a))]
-        total[k] = 2 * np.arctan2(np.einsum("ni,ni->n", a, np.cross(b, c)), A * B * C + dot[0] * C + dot[1] * A + dot[2] * B).sum()
+        total[k] = 2 * np.arctan2(np.einsum("ni,ni->n", a, np.cross(b, c)),
+                                  A * B * C + dot[0] * C + dot[1] * A + dot[2] * B).sum()
     return total / (4 * np.pi)
 
 
@@ -166,13 +182,15 @@ def sphere_mesh(n):
 
 
 def profile_mesh(z, r, n=96):
-    """Triangles of the body of revolution whose surface goes through the rings (z, r), from bottom to top, about the axis z"""
+    """Triangles of the body of revolution whose surface goes through the rings (z, r), from bottom to top, about the
+    axis z"""
     z, r = np.concatenate([[z[0]], z, [z[-1]]]), np.concatenate([[0], r, [0]])
     phi = 2 * np.pi * np.arange(n + 1) / n
     ring = np.stack([np.outer(r, np.cos(phi)), np.outer(r, np.sin(phi)), np.repeat(z[:, None], n + 1, axis=1)], axis=2)
     ring[:, -1] = ring[:, 0]
     a, b, c, d = ring[:-1, :-1], ring[:-1, 1:], ring[1:, 1:], ring[1:, :-1]
-    return np.concatenate([np.stack([a, b, c], axis=2).reshape(-1, 3, 3), np.stack([a, c, d], axis=2).reshape(-1, 3, 3)])
+    return np.concatenate([np.stack([a, b, c], axis=2).reshape(-1, 3, 3),
+                           np.stack([a, c, d], axis=2).reshape(-1, 3, 3)])
 
 
 def rod(length, radius):
@@ -228,5 +246,6 @@ def surface(shape, words):
     sizes = [float(word) for word in words]
     if len(sizes) != SHAPES[shape] or min(sizes) <= 0:
         raise Error(f"{shape} needs {SHAPES[shape]} sizes > 0, not {' '.join(words)}")
-    triangles = sphere_mesh(24) * sizes if shape == "ellipsoid" else {"rod": rod, "disc": disc, "cube": cube}[shape](*sizes)
+    triangles = sphere_mesh(24) * sizes if shape == "ellipsoid" else {"rod": rod, "disc": disc,
+                                                                      "cube": cube}[shape](*sizes)
     return closed(triangles, shape)

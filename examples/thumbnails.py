@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Makes the small pictures of README.md: of each example the first picture of its own README.    thumbnails.py [NAME ...]"""
+"""Makes the small pictures of README.md: of each example the first picture of its own README.
+
+    thumbnails.py [NAME ...]"""
 import pathlib
 import re
 import sys

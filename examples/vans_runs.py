@@ -1,4 +1,5 @@
-"""What the scripts of the vans examples share: running an input, its profiles, means with their errors, what is kept beside run.py."""
+"""What the scripts of the vans examples share: running an input, its profiles, means with their errors, what is kept
+beside run.py."""
 import os
 import shutil
 import subprocess
@@ -14,7 +15,8 @@ def lmp(folder, given, directory, log="none", **variables):
     source = os.path.join(folder, "in." + os.path.basename(folder))
     with listening(os.path.join(directory, log)):
         subprocess.run(["mpirun", "-np", str(given.ranks), "lmp", "-in", source, "-screen", "none", "-log", log]
-                       + [word for key, value in variables.items() for word in ("-var", key, str(value))], cwd=directory, check=True)
+                       + [word for key, value in variables.items() for word in ("-var", key, str(value))],
+                       cwd=directory, check=True)
 
 
 def keep(folder, given, *names):
@@ -24,8 +26,8 @@ def keep(folder, given, *names):
 
 
 def profiles(path, begin=0.0):
-    """Of a file of fix ave/time mode vector: mean over its blocks whose steps end after the share `begin` of the run; a row a slice, columns as
-    those of fix hydro/vans from the second."""
+    """Of a file of fix ave/time mode vector: mean over its blocks whose steps end after the share `begin` of the run; a
+    row a slice, columns as those of fix hydro/vans from the second."""
     blocks, steps = [], []
     for line in open(path):
         words = line.split()

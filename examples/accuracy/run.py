@@ -4,8 +4,9 @@
     run.py --out DIR    tables and picture go to DIR (default: build/examples/accuracy)
     run.py --update     also refreshes the picture in this folder
 
-The tables of PKG-STOKESDYN/doc/howto_accuracy.md are what this example wants to find: it ends with a line ok or MISSED for each of
-their numbers, and exits with 1 when one is missed. A new model is a line of MODELS, and a column of these tables.
+The tables of PKG-STOKESDYN/doc/howto_accuracy.md are what this example wants to find: it ends with a line ok or MISSED
+for each of their numbers, and exits with 1 when one is missed. A new model is a line of MODELS, and a column of these
+tables.
 """
 import pathlib
 import re
@@ -42,10 +43,12 @@ CLUMPS = {"rigid clumps": list(scenes.rigid_clumps())}
 
 class Model:
     """Keywords of the pair style, or the arguments of stokesdyn.Clump, and the scenes for which the model is meant.
-    stresslets: its spheres resist strain. viscous: its suspensions are as viscous as real ones, by films if not by stresslets."""
+    stresslets: its spheres resist strain. viscous: its suspensions are as viscous as real ones, by films if not by
+    stresslets."""
 
     def __init__(self, name, keywords, where, stresslets=False, viscous=False):
-        self.name, self.keywords, self.where, self.stresslets, self.viscous = name, keywords, where, stresslets, viscous or stresslets
+        self.name, self.keywords, self.where, self.stresslets, self.viscous = (name, keywords, where, stresslets,
+                                                                               viscous or stresslets)
 
 
 MODELS = [
@@ -68,7 +71,8 @@ def clump_velocities(model, case):
     key = case.x.tobytes(), model.name
     if key not in shapes:
         began = time.process_time()
-        shapes[key] = stokesdyn.Clump(case.x, 1, viscosity=1 / (6 * np.pi), **model.keywords), time.process_time() - began
+        shapes[key] = stokesdyn.Clump(case.x, 1, viscosity=1 / (6 * np.pi),
+                                      **model.keywords), time.process_time() - began
     clump = shapes[key][0]
     arms = case.x - clump.centre
     U, W = clump.velocity(case.force.sum(axis=0), np.cross(arms, case.force).sum(axis=0))
@@ -117,8 +121,9 @@ def missing_waves(model, name, case):
 
 
 def all_sets_over_few(phi):
-    """Mean settling speed of all sets of places that hard_spheres has, over that of its first CONFIGURATIONS, both by multiblob 12. The
-    long waves in places of a few hundred spheres differ from set to set by some per cent, but act alike on all models."""
+    """Mean settling speed of all sets of places that hard_spheres has, over that of its first CONFIGURATIONS, both by
+    multiblob 12. The long waves in places of a few hundred spheres differ from set to set by some per cent, but act
+    alike on all models."""
     speed = [float(row["K"]) for row in read_table(HERE.parent / "hard_spheres" / "sets.csv")
              if row["model"] == "multiblob 12" and float(row["phi"]) == phi]
     return np.mean(speed) / np.mean(speed[:CONFIGURATIONS])
@@ -129,7 +134,8 @@ def beside_pystokes(lammps):
     found = {}
     for row, case in scenes.of_pystokes():
         scene = f"{row['scene']}, {row['distance']}"
-        found[scene, "PyStokes"], found[scene, "PyStokes, more modes"] = (100 * (float(row[key]) - 1) for key in ("pystokes", "more"))
+        found[scene, "PyStokes"], found[scene, "PyStokes, more modes"] = (100 * (float(row[key]) - 1)
+                                                                          for key in ("pystokes", "more"))
         for model in MODELS:
             if model.where is FREE and model.name in ("lubrication", "multiblob 12"):
                 found[scene, model.name] = 100 * (case.measure(lammps.velocities_of(model, case)) / case.exact - 1)
@@ -153,8 +159,8 @@ def wanted(table="scene"):
 
 
 def draw(errors, costs, path):
-    shown = ["rigid clumps", "two spheres settle", "two spheres pressed together", "clusters near contact", "array, phi 0.125",
-             "suspension, phi 0.1"]
+    shown = ["rigid clumps", "two spheres settle", "two spheres pressed together", "clusters near contact",
+             "array, phi 0.125", "suspension, phi 0.1"]
     figure, axes = plt.subplots(2, 3, figsize=(11, 6.4), layout="constrained", sharey=True)
     for panel, scene in zip(axes.flat, shown):
         for model in MODELS:
@@ -180,11 +186,13 @@ def main():
         FREE[f"suspension, phi {phi}"] = list(scenes.suspension(phi, places))
         for model in MODELS:
             if model.stresslets:
-                errors[f"viscosity, phi {phi}", model.name] = 100 * (lammps.viscosity(model, places) / scenes.high_frequency_viscosity(phi) - 1)
+                errors[f"viscosity, phi {phi}",
+                       model.name] = 100 * (lammps.viscosity(model, places) / scenes.high_frequency_viscosity(phi) - 1)
     for model in MODELS:
         for scene, cases in model.where.items():
             answers = [(case, lammps.velocities_of(model, case)) for case in cases]
-            if scene.startswith(("array", "suspension")):     # one number, with its sign: the mean of all configurations
+            # one number, with its sign: the mean of all configurations
+            if scene.startswith(("array", "suspension")):
                 mean = np.mean([case.measure(v) for case, v in answers])
                 if scene.startswith("suspension"):
                     mean *= all_sets_over_few(float(scene.split()[-1]))
@@ -201,15 +209,18 @@ def main():
         models = [model for model in MODELS if model.where is where]
         print("\n| scene | " + " | ".join(model.name for model in models) + " |")
         for scene in list(where) + ([f"viscosity, phi {phi}" for phi in PHIS] if where is FREE else []):
-            print(f"| {scene} | " + " | ".join(f"{errors[scene, model.name]:.3g} %" if (scene, model.name) in errors else "none" for model in models) + " |")
-        print(f"| {'ms once per shape' if where is CLUMPS else 'ms per step'} | " + " | ".join(f"{1e3 * costs[model]:.3g}" for model in models) + " |")
+            print(f"| {scene} | " + " | ".join(f"{errors[scene, model.name]:.3g} %" if (scene, model.name) in errors
+                                               else "none" for model in models) + " |")
+        print(f"| {'ms once per shape' if where is CLUMPS else 'ms per step'} | " +
+              " | ".join(f"{1e3 * costs[model]:.3g}" for model in models) + " |")
     print()
     draw({key: abs(value) for key, value in errors.items()}, costs, given.out / "accuracy.png")
 
     c, page = Checks(), wanted()
     c.holds("the page has a number for every scene and model", set(page) == set(errors))
     for key in sorted(set(page) & set(errors)):
-        slack = 3 + 0.1 * page[key] if key[0].startswith(("suspension", "viscosity")) else 0.03 * page[key] + 0.006     # places of a few hundred spheres scatter
+        # places of a few hundred spheres scatter
+        slack = 3 + 0.1 * page[key] if key[0].startswith(("suspension", "viscosity")) else 0.03 * page[key] + 0.006
         c.near(f"{key[0]}, {key[1]}: error, %", errors[key], page[key], slack)
     beside, page = beside_pystokes(lammps), wanted("beside PyStokes")
     c.holds("the page has a number for every scene that PyStokes has", set(page) == set(beside))

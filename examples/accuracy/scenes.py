@@ -5,7 +5,8 @@
     molecule  [n] spheres of one number, not 0, are one rigid body
     box       edge of the periodic cube, or None: open
     wall      is there a wall at z = 0?
-    strain    [3, 3] rate of strain of the fluid, about the origin; the velocities are those less the fluid's, or None: at rest
+    strain    [3, 3] rate of strain of the fluid, about the origin; the velocities are those less the fluid's, or None:
+              at rest
     exact     the answer of `measure`, by exact Stokes flow
     measure   function of the velocities [n, 3] that the error is about
 """
@@ -73,14 +74,16 @@ def two_spheres_pressed():
 
 
 def two_spheres_strained():
-    """Two free spheres in a strain along their line of centres and in a shear with it, gaps of 0.01 to 1 radius: how they lag behind the
-    fluid, by A and B of Batchelor & Green (shear_pair/exact.csv). The error is relative to the fluid's velocity at their centres."""
+    """Two free spheres in a strain along their line of centres and in a shear with it, gaps of 0.01 to 1 radius: how
+    they lag behind the fluid, by A and B of Batchelor & Green (shear_pair/exact.csv). The error is relative to the
+    fluid's velocity at their centres."""
     for row in table(HERE.parent / "shear_pair" / "exact.csv"):
         gap = float(row["gap"])
         if not 0.009 < gap < 1.1:
             continue
         x = np.array([(0, 0, -1 - gap / 2), (0, 0, 1 + gap / 2)])
-        for strain, lag in ((np.diag([-0.5, -0.5, 1.0]), float(row["A"])), (np.array([(0, 0, 0.5), (0, 0, 0), (0.5, 0, 0)]), float(row["B"]))):
+        for strain, lag in ((np.diag([-0.5, -0.5, 1.0]), float(row["A"])),
+                            (np.array([(0, 0, 0.5), (0, 0, 0), (0.5, 0, 0)]), float(row["B"]))):
             fluid = x @ strain
             yield Case(x, np.zeros((2, 3)), fluid, lambda v, fluid=fluid, lag=lag: v + (1 + lag) * fluid, strain=strain)
 
@@ -115,11 +118,13 @@ def one_at_a_wall(pushed):
 
 
 def groups_at_a_wall(load):
-    """Two and three equal spheres above a wall, gaps of 0.1 to 0.5 from it and among each other, all under one force or random ones."""
+    """Two and three equal spheres above a wall, gaps of 0.1 to 0.5 from it and among each other, all under one force or
+    random ones."""
     found = {}
     for row in table(WALLS / "groups_exact.csv"):
         if row["load"] == load and not row["group"].startswith("pair_radii"):
-            found.setdefault(row["group"], []).append([float(row[k]) for k in ("x", "y", "z", "Fx", "Fy", "Fz", "Ux", "Uy", "Uz")])
+            found.setdefault(row["group"],
+                             []).append([float(row[k]) for k in ("x", "y", "z", "Fx", "Fy", "Fz", "Ux", "Uy", "Uz")])
     for rows in map(np.array, found.values()):
         yield Case(rows[:, :3], rows[:, 3:6], 6 * np.pi * rows[:, 6:], wall=True)
 
@@ -137,21 +142,22 @@ def arrays(phi):
 
 
 def settling(phi):
-    """Hindered settling of hard spheres at equilibrium: fit to multipole simulations of Abade et al. (J. Chem. Phys. 132, 014503
-    (2010)) by Riest et al. (Soft Matter 11, 2821 (2015))"""
+    """Hindered settling of hard spheres at equilibrium: fit to multipole simulations of Abade et al. (J. Chem. Phys.
+    132, 014503 (2010)) by Riest et al. (Soft Matter 11, 2821 (2015))"""
     return 1 - 6.5464 * phi * (1 - 3.348 * phi + 7.426 * phi**2 - 10.034 * phi**3 + 5.882 * phi**4)
 
 
 def beyond_the_box(phi, n):
-    """What waves longer than a box of n spheres add to the speed of settling, in a fluid of the viscosity of the suspension as the
-    model has it: 1.7601 S(0) (phi/n)^(1/3) (Ladd, J. Chem. Phys. 93, 3484 (1990)), S(0) of Carnahan & Starling."""
+    """What waves longer than a box of n spheres add to the speed of settling, in a fluid of the viscosity of the
+    suspension as the model has it: 1.7601 S(0) (phi/n)^(1/3) (Ladd, J. Chem. Phys. 93, 3484 (1990)), S(0) of Carnahan &
+    Starling."""
     S0 = (1 - phi)**4 / ((1 + 2 * phi)**2 + phi**3 * (phi - 4))
     return 1.7601 * S0 * (phi / n)**(1 / 3)
 
 
 def high_frequency_viscosity(phi):
-    """Of hard spheres, relative to the fluid's (Sierou & Brady, J. Fluid Mech. 448, 115 (2001)): divides beyond_the_box for models that
-    have stresslets."""
+    """Of hard spheres, relative to the fluid's (Sierou & Brady, J. Fluid Mech. 448, 115 (2001)): divides beyond_the_box
+    for models that have stresslets."""
     crowd = phi * (1 + phi * (1 + phi - 2.3 * phi**2))
     return (1 + 1.5 * crowd) / (1 - crowd)
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Active Brownian particles (in.active): one alone, two that feel each other's flow, thousands that do not, and a crowd in a layer.
+"""Active Brownian particles (in.active): one alone, two that feel each other's flow, thousands that do not, and a crowd
+in a layer.
 
     run.py --out DIR     results and the picture go to DIR (default: build/examples/active)
     run.py --quick       fewer particles, and no crowd: seconds
@@ -44,10 +45,11 @@ def directions(n, rng):
     return e / np.linalg.norm(e, axis=1)[:, None]
 
 
-# --- two of them, by a dense matrix -----------------------------------------------------------------------------------------
+# --- two of them, by a dense matrix -----------------------------------------------------------------------------------
 
 def flow_of_all(x, F):
-    """Velocity and angular velocity [n, 3] of spheres of radius 1 that do not overlap, 6 pi eta = 1 (Rotne & Prager 1969)"""
+    """Velocity and angular velocity [n, 3] of spheres of radius 1 that do not overlap, 6 pi eta = 1 (Rotne & Prager
+    1969)"""
     U, W = F.copy(), np.zeros_like(F)
     for i in range(len(x)):
         for j in set(range(len(x))) - {i}:
@@ -77,7 +79,8 @@ def pair(out, c):
     x, e = np.array([(0, 0, 0), (3.0, 1.0, 0.5)]), np.array([(0.6, 0.8, 0), (0, 0.28, 0.96)])
     write(out / "one.data", x[:1], e[:1], [-30] * 3, [30] * 3)
     _, rows = run(out, "one", steps=10, every=10)
-    c.below("one alone: its velocity from push/(6 pi eta a) along its direction", np.abs(rows[-1, 0, 3:6] - e[0]).max(), 1e-14)
+    c.below("one alone: its velocity from push/(6 pi eta a) along its direction", np.abs(rows[-1, 0, 3:6] - e[0]).max(),
+            1e-14)
     write(out / "pair.data", x, e, [-30] * 3, [30] * 3)
     steps, rows = run(out, "pair", steps=800, every=10, dt=0.01)
     worst = 0.0
@@ -91,7 +94,7 @@ def pair(out, c):
     return rows
 
 
-# --- thousands, each for itself ---------------------------------------------------------------------------------------------
+# --- thousands, each for itself ---------------------------------------------------------------------------------------
 
 def walk_law(t, v):
     """Mean square displacement with D = kT = 1"""
@@ -115,14 +118,17 @@ def walkers(out, c, n, steps):
     square, memory, error = np.array(square), np.array(memory), np.array(error)
     law = walk_law(t, PECLET)
     print(f"  walkers: standard error of the last mean square displacement {100 * error[-1]:.2f} %")
-    c.below("walkers: mean square displacement over its law, less 1, in standard errors", (np.abs(square / law - 1) / error).max(), 3.5)
-    c.below("walkers: mean of e(0).e(t) from exp(-2 D_r t)", np.abs(memory - np.exp(-2 * D_R * t)).max(), 3 / np.sqrt(n))
+    c.below("walkers: mean square displacement over its law, less 1, in standard errors",
+            (np.abs(square / law - 1) / error).max(), 3.5)
+    c.below("walkers: mean of e(0).e(t) from exp(-2 D_r t)", np.abs(memory - np.exp(-2 * D_R * t)).max(),
+            3 / np.sqrt(n))
     late = (square[-1] + PECLET**2 / (2 * D_R**2) * (1 - np.exp(-2 * D_R * t[-1]))) / (6 * t[-1])
-    c.near("walkers: long-time diffusion over D + v^2/(6 D_r)", late / (1 + PECLET**2 / (6 * D_R)), 1, max(0.02, 3 * error[-1]))
+    c.near("walkers: long-time diffusion over D + v^2/(6 D_r)", late / (1 + PECLET**2 / (6 * D_R)), 1,
+           max(0.02, 3 * error[-1]))
     return t, square
 
 
-# --- a crowd ----------------------------------------------------------------------------------------------------------------
+# --- a crowd ----------------------------------------------------------------------------------------------------------
 
 def crowd(out, c):
     rng, m = np.random.default_rng(3), int(np.ceil(np.sqrt(CROWD)))
@@ -134,10 +140,12 @@ def crowd(out, c):
         steps, rows = run(out, name, model=model, edges="p", kT=KT, dt=0.02, layer=5, contact=15, steps=8000, every=400)
         now, late = rows[:, :, 9:], rows[len(rows) // 2:]
         memory = (now[1:] * now[:-1]).sum(axis=2).mean()
-        spread = np.std([np.histogram2d(*np.mod(frame[:, :2], EDGE).T, bins=3, range=[[0, EDGE]] * 2)[0] for frame in late], axis=(1, 2))
+        spread = np.std([np.histogram2d(*np.mod(frame[:, :2], EDGE).T, bins=3, range=[[0, EDGE]] * 2)[0]
+                         for frame in late], axis=(1, 2))
         found[name] = rows[-1], memory
-        print(f"  crowd, {name}: mean of e(0).e(8) {memory:.3f}; spheres in a ninth of the layer {CROWD / 9:.0f} +- {spread.mean():.1f}; "
-              f"mean speed in the layer {np.linalg.norm(late[:, :, 3:5], axis=2).mean():.3f}", flush=True)
+        print(f"  crowd, {name}: mean of e(0).e(8) {memory:.3f}; spheres in a ninth of the layer {CROWD / 9:.0f} +- "
+              f"{spread.mean():.1f}; mean speed in the layer {np.linalg.norm(late[:, :, 3:5], axis=2).mean():.3f}",
+              flush=True)
     law = np.exp(-2 * KT * D_R * 8)
     c.near("crowd without hydrodynamics: e(0).e(8), closed form", found["alone"][1], law, 0.01)
     c.within("crowd with hydrodynamics: flows turn the spheres, e(0).e(8)", found["together"][1], 0.4, 0.8)
@@ -163,7 +171,8 @@ def draw(walk, found, path):
     panels[0].loglog(fine, walk_law(fine, PECLET), "k-", lw=1.2, label="closed form")
     panels[0].loglog(fine, 6 * fine, ":", color="0.5", label="without a push")
     panels[0].loglog(t, square, "o", color="C1", label="run")
-    panels[0].set(xlabel="time, in a^2/D", ylabel="mean square displacement, in a^2", title="particles that do not feel each other")
+    panels[0].set(xlabel="time, in a^2/D", ylabel="mean square displacement, in a^2",
+                  title="particles that do not feel each other")
     panels[0].legend(frameon=False)
     for panel, name, title in zip(panels[1:], ("alone", "together"), ("without hydrodynamics", "with hydrodynamics")):
         discs(panel, found[name][0], f"a crowd {title}")

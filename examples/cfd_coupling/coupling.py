@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""A small outside CFD code coupled to LAMMPS: it gives every sphere the fluid's velocity and viscosity and reads the drag back.
+"""A small outside CFD code coupled to LAMMPS: it gives every sphere the fluid's velocity and viscosity and reads the
+drag back.
 
     coupling.py prescribed      clumps cross a given cellular flow of varying viscosity
     coupling.py two-way         clumps and a body of fluid exchange momentum
@@ -8,11 +9,12 @@ The order of a step (velocity Verlet), and where the CFD code stands in it:
 
     half a kick with the force F_n, drift to x_(n+1)
     pair style:   F_(n+1) from the velocities of the half step and the fluid velocity that was written in step n
-    callback:     reads x_(n+1) and F_(n+1), advances the fluid, writes the fluid velocity at x_(n+1), which acts in step n+2
+    callback:     reads x_(n+1) and F_(n+1), advances the fluid, writes the fluid velocity at x_(n+1), which acts
+                  in step n+2
     half a kick with F_(n+1)
 
-So the coupling is explicit with a lag of one step. The clumps receive the impulse dt/2 (F_n + F_(n+1)) in a step, not dt F_(n+1).
-The fluid is given exactly the opposite, hence momentum is conserved to rounding.
+So the coupling is explicit with a lag of one step. The clumps receive the impulse dt/2 (F_n + F_(n+1)) in a step, not
+dt F_(n+1). The fluid is given exactly the opposite, hence momentum is conserved to rounding.
 """
 import argparse
 import os
@@ -72,9 +74,9 @@ class PeriodicFluid:
 
         rho (du/dt + u.grad u) = -grad p + eta lap u + f,   div u = 0
 
-    Each sphere takes its velocity from the eight nearest grid points and gives its reaction to them with the same weights. The
-    weights sum to 1, so no momentum is lost on the way; pressure, viscosity and convection move momentum about but leave its sum
-    alone, which is the mode k = 0.
+    Each sphere takes its velocity from the eight nearest grid points and gives its reaction to them with the same
+    weights. The weights sum to 1, so no momentum is lost on the way; pressure, viscosity and convection move momentum
+    about but leave its sum alone, which is the mode k = 0.
     """
 
     def __init__(self, rho, cell):
@@ -86,7 +88,8 @@ class PeriodicFluid:
         k = np.meshgrid(*(2.0 * np.pi * np.fft.fftfreq(n, cell) for n in self.n), indexing="ij")
         self.k = np.stack(k, axis=-1)
         self.k2 = (self.k ** 2).sum(axis=-1)
-        self.resolved = np.all(np.abs(self.k) < 2.0 / 3.0 * np.pi / cell, axis=-1)      # of products: the others would be aliased
+        # of products: the others would be aliased
+        self.resolved = np.all(np.abs(self.k) < 2.0 / 3.0 * np.pi / cell, axis=-1)
 
     def weights(self, x):
         at = x / self.cell
@@ -146,7 +149,8 @@ class Coupling:
         self.lmp.numpy.extract_atom("d_eta")[:] = self.fluid.viscosity(x)
 
     def gather(self, name, columns):
-        """A per-atom quantity of all ranks in the order of the IDs; each rank then knows all, and keeps the whole fluid."""
+        """A per-atom quantity of all ranks in the order of the IDs; each rank then knows all, and keeps the whole
+        fluid."""
         return np.array(self.lmp.gather(name, 1, columns)).reshape(-1, columns)
 
     def exchange(self, step):
@@ -157,7 +161,8 @@ class Coupling:
         total = self.fluid.total(rate)
         on_clumps = [self.lmp.extract_fix("drag", LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR, d) for d in range(3)]
         self.imbalance = max(self.imbalance, np.linalg.norm(on_clumps + total) / np.linalg.norm(F, axis=1).sum())
-        if self.step is not None and step != self.step:         # the same step again: a setup has evaluated the force anew
+        # the same step again: a setup has evaluated the force anew
+        if self.step is not None and step != self.step:
             impulse = 0.5 * dt * (self.rate + rate)
             self.fluid.advance(impulse, dt)
             self.reaction += self.fluid.total(impulse)
@@ -219,14 +224,17 @@ def main():
     lmp.file("in.cfd_coupling")
     fluid = PrescribedFlow() if args.scene == "prescribed" else PeriodicFluid(rho=0.012, cell=8.0)
     coupling = Coupling(lmp, fluid)
-    coupling.write()            # before the first force: the viscosity of a new property is 0, which the pair style refuses
+    # before the first force: the viscosity of a new property is 0, which the pair style refuses
+    coupling.write()
     mass = coupling.gather("rmass", 1).sum()
     weight = np.array((0.0, -lmp.extract_variable("gravity", None, 0) * mass, 0.0))
     start = coupling.clump_momentum() + fluid.momentum()
     curve, largest, drift = [], 0.0, 0.0
 
-    say("    time   momentum of the clumps     momentum of the fluid      sum - start - weight*time   force + rate of fluid")
-    say("                  x            y            x            y            x            y         largest / sum of |F|")
+    say("    time   momentum of the clumps     momentum of the fluid      sum - start - weight*time   force "
+        "+ rate of fluid")
+    say("                  x            y            x            y            x            y         "
+        "largest / sum of |F|")
 
     def report():
         nonlocal largest, drift
@@ -237,8 +245,8 @@ def main():
         largest = max(largest, np.linalg.norm(clumps), np.linalg.norm(body))
         drift = max(drift, np.linalg.norm(off))
         curve.append(np.concatenate(([time], clumps, body, off)))
-        say(f"{time:8.1f} {clumps[0]:12.4f} {clumps[1]:12.4f} {body[0]:12.4f} {body[1]:12.4f} {off[0]:12.1e} {off[1]:12.1e}"
-            f"           {coupling.imbalance:9.1e}")
+        say(f"{time:8.1f} {clumps[0]:12.4f} {clumps[1]:12.4f} {body[0]:12.4f} {body[1]:12.4f} {off[0]:12.1e} "
+            f"{off[1]:12.1e}           {coupling.imbalance:9.1e}")
 
     if args.driver == "callback":
         lmp.command("fix cfd all external pf/callback 1 1")         # after fix drag: its forces are those of this step

@@ -26,8 +26,9 @@ def draw_chains(ax, tracks, frames, colours):
     unit = ax.transData.transform((1.0, 0.0))[0] - ax.transData.transform((0.0, 0.0))[0]
     area = np.pi * (unit * 72.0 / ax.figure.dpi) ** 2
     for f in frames:
-        ax.add_collection(CircleCollection([area], offsets=tracks[f, :, :2] % EDGE, offset_transform=ax.transData, zorder=3,
-                                           facecolors=np.repeat(colours, CHAIN, axis=0), edgecolors="black", linewidths=0.3))
+        ax.add_collection(CircleCollection([area], offsets=tracks[f, :, :2] % EDGE, offset_transform=ax.transData,
+                                           zorder=3, facecolors=np.repeat(colours, CHAIN, axis=0), edgecolors="black",
+                                           linewidths=0.3))
 
 
 def panel(ax, title):
@@ -62,12 +63,14 @@ def draw(folder, picture):
 
     fig.canvas.draw()       # the axes have their final size from here on
     tracks = given["tracks"]
-    draw_chains(left, tracks, range(0, len(tracks), 25), plt.cm.turbo(np.linspace(0.05, 0.95, tracks.shape[1] // CHAIN)))
+    draw_chains(left, tracks, range(0, len(tracks), 25),
+                plt.cm.turbo(np.linspace(0.05, 0.95, tracks.shape[1] // CHAIN)))
     tracks = mutual["tracks"]
     first = tracks[: 1 + SNAPSHOT // SAMPLE]
     draw_chains(middle, first, (0, len(first) - 1), plt.cm.turbo(np.linspace(0.05, 0.95, tracks.shape[1] // CHAIN)))
 
-    time, clumps, fluid, off = mutual["curve"][:, 0], mutual["curve"][:, 1], mutual["curve"][:, 4], mutual["curve"][:, 7:]
+    time, clumps, fluid, off = mutual["curve"][:,
+                                               0], mutual["curve"][:, 1], mutual["curve"][:, 4], mutual["curve"][:, 7:]
     right.plot(time, clumps, label="chains", color="C0")
     right.plot(time, fluid, label="fluid", color="C1")
     right.plot(time, clumps + fluid, label="sum", color="k")

@@ -33,7 +33,8 @@ def run(scene, driver, ranks, out, steps=None):
     result = folder / f"{scene}.npz"
     result.unlink(missing_ok=True)
     command = ["mpirun", "-np", str(ranks), sys.executable, str(HERE / "coupling.py"), scene, "--driver", driver,
-               "--out", str(folder), "--log", str(folder / f"log.{scene}")] + ["--steps", str(steps)] * (steps is not None)
+               "--out", str(folder), "--log",
+               str(folder / f"log.{scene}")] + ["--steps", str(steps)] * (steps is not None)
     start = time.time()
     print(f"[{scene}, {driver}, {ranks} rank{'s' if ranks > 1 else ''}]", end=" ", flush=True)
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Runs channel_flow at three resolutions, both flows; table and picture: profiles against the series. After: . build/env.sh"""
+"""Runs channel_flow at three resolutions, both flows; table and picture: profiles against the series. After: .
+build/env.sh"""
 import os
 import sys
 
@@ -15,7 +16,8 @@ def series(flow, y, t, nu=0.1, g=0.8, U=1.0):
         k = (2 * np.arange(100) + 1)[:, None] * np.pi
         return g / (2 * nu) * y * (1 - y) - (4 * g / (nu * k**3) * np.sin(k * y) * np.exp(-k * k * nu * t)).sum(0)
     n = np.arange(1, 200)[:, None]
-    return U * y + (2 * U / (n * np.pi) * (-1.0) ** n * np.sin(n * np.pi * y) * np.exp(-((n * np.pi) ** 2) * nu * t)).sum(0)
+    return (U * y + (2 * U / (n * np.pi) * (-1.0) ** n * np.sin(n * np.pi * y) *
+                     np.exp(-((n * np.pi) ** 2) * nu * t)).sum(0))
 
 
 # Largest error in %, and order from the resolution before.
@@ -33,7 +35,8 @@ for flow, axis in (("poiseuille", axes[0]), ("couette", axes[1])):
         blocks = [b for b in S.profiles(os.path.join(out, "%s.%d.txt" % (flow, n))) if b[0] > 0]
         error = max(np.abs(rows[:, 3] - series(flow, rows[:, 1], s * step)).max() for s, rows in blocks)
         table += "| %s | %d | %.2f %% | %s |\n" % (flow, n, 100 * error, "%.2f" % np.log2(last / error) if last else "")
-        c.near("%s, %d across: largest error in %%" % (flow, n), 100 * error, WANTED[flow, n][0], 0.05 * WANTED[flow, n][0])
+        c.near("%s, %d across: largest error in %%" % (flow, n), 100 * error, WANTED[flow, n][0],
+               0.05 * WANTED[flow, n][0])
         if last:
             c.near("%s, %d across: order" % (flow, n), np.log2(last / error), WANTED[flow, n][1], 0.1)
         last = error

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Runs channel_inlet; mass flux through four sections, and the velocity near the outlet against Poiseuille's. After: . build/env.sh"""
+"""Runs channel_inlet; mass flux through four sections, and the velocity near the outlet against Poiseuille's. After: .
+build/env.sh"""
 import os
 import sys
 
@@ -40,6 +41,7 @@ below.set(xlabel="y", ylabel="velocity")
 below.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=5)
 figure.savefig(os.path.join(out, "channel_inlet.png"), bbox_inches="tight")
 S.keep(folder, out, "channel_inlet.png",
-       "| | run | exact |\n|---|---|---|\n| mass flux at x = 0.75, 1.75, 2.75, 3.75 | %s | 1 |\n| pressure gradient from x = 2 to 3 | %.3f | 0.600 |\n"
+       "| | run | exact |\n|---|---|---|\n| mass flux at x = 0.75, 1.75, 2.75, 3.75 | %s | 1 |\n"
+       "| pressure gradient from x = 2 to 3 | %.3f | 0.600 |\n"
        "| velocity near the outlet, rms difference | %.3f | 0 |\n" % (" ".join("%.4f" % f for f in flux), slope, off))
 sys.exit(c.finish())

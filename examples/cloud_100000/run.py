@@ -38,7 +38,8 @@ def film_strip(film, R, path):
     fig, axes = plt.subplots(1, len(film), figsize=(12.0, 4.4), dpi=90, layout="constrained", sharey=True)
     for ax, rows in zip(axes, film):
         slab = rows[np.abs(rows[:, 2]) < 0.08 * R]
-        shown = ax.scatter(slab[:, 1] / R, slab[:, 3] / R, c=-slab[:, 4], s=0.5, cmap="viridis", vmin=600, vmax=1200, linewidths=0)
+        shown = ax.scatter(slab[:, 1] / R, slab[:, 3] / R, c=-slab[:, 4], s=0.5, cmap="viridis", vmin=600, vmax=1200,
+                           linewidths=0)
         ax.set(aspect="equal", xlim=(-1.25, 1.25), ylim=(-3.2, 1.2), xticks=[])
     axes[0].set_ylabel("height / radius of the ball")
     fig.colorbar(shown, ax=axes, label="speed / that of a lone sphere", shrink=0.7)
@@ -54,7 +55,8 @@ def main():
 
     # A fifth of it, at once: against the sum over all pairs, and on 1 rank against 2
     found = {}
-    for name, ranks, words in (("direct", 2, dict(far_field="direct")), ("ewald", 2, dict(far_field="ewald")), ("one", 1, dict(far_field="ewald"))):
+    for name, ranks, words in (("direct", 2, dict(far_field="direct")), ("ewald", 2, dict(far_field="ewald")),
+                               ("one", 1, dict(far_field="ewald"))):
         lammps(out, f"log.{name}", ranks, spheres=20000, steps=1, frames=1, falls=1e-6, **words)
         found[name] = frames(out)[0][:, 4]
     scale = np.sqrt(np.mean(found["direct"]**2))
@@ -66,7 +68,8 @@ def main():
     speed, predicted = lammps(out, "log.cloud_100000.2", 2)
     film = frames(out)
     R = (100000 / 0.05)**(1 / 3)
-    c.near("speed of the ball at first, in that of point forces in a ball", -film[0][:, 4].mean() / predicted, 1.0, 0.01)
+    c.near("speed of the ball at first, in that of point forces in a ball", -film[0][:, 4].mean() / predicted, 1.0,
+           0.01)
     c.near("the same in the end", speed / predicted, 1.0, 0.02)
     c.within("height that it has fallen, in its radii", (film[0][:, 3].mean() - film[-1][:, 3].mean()) / R, 1.9, 2.05)
     inside = np.linalg.norm(film[-1][:, 1:4] - film[-1][:, 1:4].mean(axis=0), axis=1) < 1.1 * R

@@ -1,8 +1,8 @@
 /* clump_resistance FILE [shell n] [rotation yes|no] [visc eta] [memory bytes] [digits n]
  *
- * Resistance and mobility of the rigid clump in FILE, from the core of the plugin, without LAMMPS. FILE is a LAMMPS molecule
- * file (sections Coords and Diameters) or a list of spheres, x y z radius a line, separated by blanks or commas; '-' is standard
- * input. Everything comes out in the units of the input. */
+ * Resistance and mobility of the rigid clump in FILE, from the core of the plugin, without LAMMPS. FILE is a LAMMPS
+ * molecule file (sections Coords and Diameters) or a list of spheres, x y z radius a line, separated by blanks or
+ * commas; '-' is standard input. Everything comes out in the units of the input. */
 #define _POSIX_C_SOURCE 199309L
 
 #include "sd_clump.h"
@@ -21,7 +21,7 @@ static void stop(const char *what, const char *detail)
   exit(1);
 }
 
-/* --- input ------------------------------------------------------------------------------------------------------- */
+/* --- input ------------------------------------------------------------------------------------------------------ */
 
 typedef struct {
   int n, capacity;
@@ -134,7 +134,7 @@ static spheres read_spheres(const char *name)
   return s;
 }
 
-/* --- output -------------------------------------------------------------------------------------------------------- */
+/* --- output ------------------------------------------------------------------------------------------------------- */
 
 /* Rounding, of one sign or the other, is not shown. */
 static double tidy(double v)

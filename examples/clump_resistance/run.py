@@ -3,9 +3,9 @@
 
     run.py [--program FILE]     FILE: the program (default: clump_resistance.sh, which sets everything up when need be)
 
-Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed. The row of four overlapping
-spheres has its values from the test-suite of PyGRPY (github.com/RadostW/PyGRPY), to the digits that it prints; the touching pair
-and the cube of eight have theirs from exact Stokes flow.
+Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed. The row of four
+overlapping spheres has its values from the test-suite of PyGRPY (github.com/RadostW/PyGRPY), to the digits that it
+prints; the touching pair and the cube of eight have theirs from exact Stokes flow.
 """
 import argparse
 import math

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Rigid rods settle in a periodic box, each of five spheres that are shells of points: streams form, rods turn upright.
 
-    run.py --out DIR              results and picture go to DIR (default: build/examples/clump_suspension); half as long as the kept picture
+    run.py --out DIR              results and picture go to DIR (default: build/examples/clump_suspension); half as
+                                  long as the kept picture
     run.py --time 60 --update     as long as that picture, which is refreshed
     run.py --film                 also the film, in DIR; with --update it is refreshed too
 
@@ -42,19 +43,22 @@ def upright():
 
 def write_data(path, rods):
     x = rods.reshape(-1, 3) % BOX
-    rows = "".join(f"{i + 1} 1 {p[0]:.17g} {p[1]:.17g} {p[2]:.17g} 2.0 1.0 {i // LENGTH + 1}\n" for i, p in enumerate(x.tolist()))
-    path.write_text(f"rods\n\n{len(x)} atoms\n1 atom types\n\n" + "".join(f"0 {edge:.17g} {c}lo {c}hi\n" for c, edge in zip("xyz", BOX.tolist())) +
+    rows = "".join(f"{i + 1} 1 {p[0]:.17g} {p[1]:.17g} {p[2]:.17g} 2.0 1.0 {i // LENGTH + 1}\n"
+                   for i, p in enumerate(x.tolist()))
+    path.write_text(f"rods\n\n{len(x)} atoms\n1 atom types\n\n" +
+                    "".join(f"0 {edge:.17g} {c}lo {c}hi\n" for c, edge in zip("xyz", BOX.tolist())) +
                     "\nAtoms\n\n" + rows)
 
 
 def lammps(out, tag, rods, ranks=1, **variables):
-    """Frames [time, rods, LENGTH, (x y z vx vy vz)] and the rows of the log: step, time, speed, error estimate, products, residual,
-    not converged, gap"""
+    """Frames [time, rods, LENGTH, (x y z vx vy vz)] and the rows of the log: step, time, speed, error estimate,
+    products, residual, not converged, gap"""
     folder = out / tag
     folder.mkdir(exist_ok=True)
     write_data(folder / "rods.data", rods)
     command = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
-    said = finished("clump_suspension", command + ["lmp", "-in", "in.clump_suspension", "-log", str(folder / "log"), "-nocite"] +
+    said = finished("clump_suspension", command + ["lmp", "-in", "in.clump_suspension", "-log", str(folder / "log"),
+                                                   "-nocite"] +
                     values(dict(variables, data=folder / "rods.data", out=folder)), HERE)
     frames = np.array([rows[:, 2:] for _, rows in dumped(folder / "rods")])
     return frames.reshape(len(frames), -1, LENGTH, 6), thermo(said, "Step v_now")
@@ -83,13 +87,15 @@ def rods_of(axis, frame, mean):
     colours = plt.get_cmap("coolwarm_r")(0.5 + (v - mean) / 6.0)
     flat, owner = x.reshape(-1, 3), np.repeat(np.arange(len(frame)), LENGTH)
     near_last = np.argsort(-flat[:, 1])
-    axis.add_collection(EllipseCollection(2.0, 2.0, 0.0, units="xy", offsets=flat[near_last][:, [0, 2]], offset_transform=axis.transData,
-                                          facecolors=colours[owner[near_last]], edgecolors="black", linewidths=0.3))
+    axis.add_collection(EllipseCollection(2.0, 2.0, 0.0, units="xy", offsets=flat[near_last][:, [0, 2]],
+                                          offset_transform=axis.transData, facecolors=colours[owner[near_last]],
+                                          edgecolors="black", linewidths=0.3))
     axis.set(xlim=(0, BOX[0]), ylim=(0, BOX[2]), aspect="equal", xticks=[], yticks=[])
 
 
 def strip(frames, curve, path):
-    figure, axes = plt.subplots(1, len(SHOWN) + 1, figsize=(11, 4.6), layout="constrained", width_ratios=[1] * len(SHOWN) + [2.2])
+    figure, axes = plt.subplots(1, len(SHOWN) + 1, figsize=(11, 4.6), layout="constrained",
+                                width_ratios=[1] * len(SHOWN) + [2.2])
     for axis, t in zip(axes, (t for t in SHOWN if t < len(frames))):
         rods_of(axis, frames[t], curve["speed"][t] * -1)
         axis.set_title(f"time {t}", fontsize=10)
@@ -98,8 +104,10 @@ def strip(frames, curve, path):
 
 
 def curves(axis, curve, until):
-    axis.plot(curve["time"][:until], curve["speed"][:until] / curve["lone"], "C3-", label="mean speed / that of a lone rod at random")
-    axis.plot(curve["time"][:until], curve["alignment"][:until], "C0-", label="mean $\\cos^2$ of the angle to the vertical")
+    axis.plot(curve["time"][:until], curve["speed"][:until] / curve["lone"], "C3-",
+              label="mean speed / that of a lone rod at random")
+    axis.plot(curve["time"][:until], curve["alignment"][:until], "C0-",
+              label="mean $\\cos^2$ of the angle to the vertical")
     axis.axhline(1 / 3, color="C0", ls=":", lw=1)
     axis.set(xlabel="time", xlim=(0, curve["time"][-1]), ylim=(0, 1.2))
     axis.legend(fontsize=8, loc="upper left")
@@ -123,12 +131,15 @@ def main():
     need("lmp", "mpirun")
     for points, limit in ((12, 0.3), (42, 0.1)):
         for name, rods in (("along", upright()), ("across", upright()[:, :, [2, 1, 0]])):
-            frames, _ = lammps(out, "lone", rods + 10, sides="m", points=points, time=0.025, frame=0.025, tolerance=1e-6)
+            frames, _ = lammps(out, "lone", rods + 10, sides="m", points=points, time=0.025, frame=0.025,
+                               tolerance=1e-6)
             speed = -frames[0, 0, :, 5].mean()
-            c.near(f"lone rod, multiblob {points}: drag {name} itself over exact, %", 100 * (LENGTH / speed / EXACT[name] - 1), 0, limit)
+            c.near(f"lone rod, multiblob {points}: drag {name} itself over exact, %",
+                   100 * (LENGTH / speed / EXACT[name] - 1), 0, limit)
 
     rods = scattered()
-    first = {points: lammps(out, f"first_{points}", rods, points=points, films=films, time=0.025, frame=0.025, tolerance=1e-4)[0][0]
+    first = {points: lammps(out, f"first_{points}", rods, points=points, films=films, time=0.025, frame=0.025,
+                            tolerance=1e-4)[0][0]
              for points, films in ((1, "no"), (12, "yes"), (42, "yes"))}
     v = {points: frame[:, :, 3:].reshape(-1, 3) for points, frame in first.items()}
     for points, low, high in ((12, 0, 1.0), (1, 3.0, 30.0)):
@@ -139,8 +150,9 @@ def main():
     lone = LENGTH * (1 / EXACT["along"] / 3 + 2 / EXACT["across"] / 3)
     curve = dict(time=rows[:, 1], speed=rows[:, 2], alignment=alignment(frames), lone=lone)
     for k in range(0, len(rows), 5):
-        print(f"  time {rows[k, 1]:4.0f}: speed over a lone rod {rows[k, 2] / lone:.3f}, alignment {curve['alignment'][k]:.3f}, "
-              f"streams {streams(frames)[k]:.3f}, products {rows[k, 4]:.0f}, gap {rows[k, 7]:.3f}")
+        print(f"  time {rows[k, 1]:4.0f}: speed over a lone rod {rows[k, 2] / lone:.3f}, "
+              f"alignment {curve['alignment'][k]:.3f}, streams {streams(frames)[k]:.3f}, products {rows[k, 4]:.0f}, "
+              f"gap {rows[k, 7]:.3f}")
     bent = np.linalg.norm(along(frames), axis=-1) - 2 * (LENGTH - 1)
     c.below("largest change of the length of a rod, radii", np.abs(bent).max(), 1e-8)
     c.below("steps whose solve did not converge", rows[-1, 6], 0)
@@ -149,7 +161,8 @@ def main():
     c.within("alignment at the beginning", curve["alignment"][0], 0.25, 0.42)
     c.within("alignment in the last third", curve["alignment"][-len(rows) // 3:].mean(), 0.4, 0.9)
     two, _ = lammps(out, "two", rods, ranks=2, time=0.25, frame=0.25)
-    c.below("2 ranks against 1 at time 0.25, radii", np.abs(two[-1] - lammps(out, "one", rods, time=0.25, frame=0.25)[0][-1])[..., :3].max(), 1e-4)
+    c.below("2 ranks against 1 at time 0.25, radii",
+            np.abs(two[-1] - lammps(out, "one", rods, time=0.25, frame=0.25)[0][-1])[..., :3].max(), 1e-4)
     strip(frames, curve, out / "clump_suspension.png")
     if given.film:
         moving(frames, curve, out / "clump_suspension.gif")

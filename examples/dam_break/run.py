@@ -41,7 +41,8 @@ for source, mark in (("koshizuka_oka_1996", "s"), ("martin_moyce_1952_a2.25in", 
         if 0 < a <= 3:
             here = np.interp(a, t["v_T"], t["v_Z"])
             worst[source] = max(worst.get(source, 0), abs(here / b - 1))
-            table += "| %s | %.3f | %.3f | %.3f | %+.1f %% |\n" % (source.replace("_", " "), a, b, here, 100 * (here / b - 1))
+            table += "| %s | %.3f | %.3f | %.3f | %+.1f %% |\n" % (source.replace("_", " "), a, b, here,
+                                                                   100 * (here / b - 1))
 for source, limit in (("koshizuka_oka_1996", 4.3), ("martin_moyce_1952_a2.25in", 5.0)):
     c.below(source.replace("_", " ") + ": largest difference of the front in %", 100 * worst[source], limit)
 front.plot(t["v_T"], t["v_Z"], "-", label="run")
@@ -52,7 +53,8 @@ for k in (1, 2, 3):
     axis, shot = figure.add_subplot(grid[k - 1, 1]), shots[10 * k]
     wall = shot["type"] == 2
     axis.scatter(shot["x"][wall], shot["y"][wall], s=2, color="0.7")
-    colours = axis.scatter(shot["x"][~wall], shot["y"][~wall], s=3, c=shot["f_eos"][~wall] / 1000, cmap="viridis", vmin=0, vmax=2.5)
+    colours = axis.scatter(shot["x"][~wall], shot["y"][~wall], s=3, c=shot["f_eos"][~wall] / 1000, cmap="viridis",
+                           vmin=0, vmax=2.5)
     axis.set(aspect="equal", xlim=(-0.03, 0.62), ylim=(-0.03, 0.31), xticks=[], yticks=[])
     axis.text(0.35, 0.25, "T = %.1f" % k)
     axis.grid(False)

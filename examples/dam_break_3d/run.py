@@ -3,8 +3,10 @@
 
     run.py [--quick] [--reuse] [--update] [N ...]
 
-N: particles over the depth, 10 if none is given. Up to 10 the run has 6 s, finer ones 0.72 s, which is the impact; --quick: 0.72 s for
-all. Multiples of 10: the patches that measure the load are 0.055 m high, a whole number of spacings. --reuse: takes the logs of earlier runs in build/examples/dam_break_3d where there are some, also of one that is not finished.
+N: particles over the depth, 10 if none is given. Up to 10 the run has 6 s, finer ones 0.72 s, which is the impact;
+--quick: 0.72 s for all. Multiples of 10: the patches that measure the load are 0.055 m high, a whole number of
+spacings. --reuse: takes the logs of earlier runs in build/examples/dam_break_3d where there are some, also of one that
+is not finished.
 """
 import os
 import re
@@ -94,7 +96,8 @@ def pascals(values):
 at_box = arrival(fast)
 times = heading("arrival at the box", "H2 to 0.72 s", "H4 to 0.72 s", "H2 to 6 s", "H4 to 6 s", "processor, min")
 times += "| experiment | %.3f s | | | | | |\n" % at_box
-patches = heading("0 to 0.055 m", "0.055 to 0.11 m", "0.11 to 0.165 m", "all three") + pascals([*loads(0, WINDOW), loads(0, WINDOW).mean()])
+patches = heading("0 to 0.055 m", "0.055 to 0.11 m", "0.11 to 0.165 m",
+                  "all three") + pascals([*loads(0, WINDOW), loads(0, WINDOW).mean()])
 probes = heading(*SENSORS) + pascals(means(fast, SENSORS, 0, WINDOW))
 figure, axes = plt.subplots(2, 3, figsize=(12, 6))
 for axis, name in zip(axes.flat, ("H2", "P1", "P2", "H4", "P3", "P4")):
@@ -112,8 +115,9 @@ for n in sizes:
     face = means(curves, list(PATCHES), 0, end).mean() / loads(0, end).mean() - 1
     probe = means(curves, SENSORS, 0, end) / means(fast, SENSORS, 0, end) - 1
     early, later = (means(curves, ["L1"], *window)[0] / loads(*window)[0] for window in ((0, 0.08), (0.08, end)))
-    print("[dam_break_3d] load on the lowest patch over P1, from 0 to 0.08 s after the arrival: %.2f, from there to %.2f s: %.2f; "
-          "arrival by this load: %+.1f %%" % (early, end, later, 100 * (arrival(curves, "L1") / at_box - 1)))
+    print("[dam_break_3d] load on the lowest patch over P1, from 0 to 0.08 s after the arrival: %.2f, "
+          "from there to %.2f s: %.2f; arrival by this load: %+.1f %%" %
+          (early, end, later, 100 * (arrival(curves, "L1") / at_box - 1)))
     heights = {name: np.sqrt(np.mean(differences(name, curves, IMPACT) ** 2)) for name in ("H2", "H4")}
     whole = ["%.3f" % abs(differences(name, curves, 6)).mean() if curves["t"][-1] > 5.9 else "" for name in heights]
     times += "| %d | %+.1f %% | %.3f | %.3f | %s | %s | %s |\n" % (
@@ -122,10 +126,12 @@ for n in sizes:
     probes += percent(n, probe)
     limits = FINE if n >= 30 else COARSE
     c.below("%d over the depth: arrival at the box, off by" % n, abs(late), limits["arrival"])
-    c.below("%d over the depth: mean load on the lowest patch in %.2f s from there, off P1 by" % (n, end), abs(load[0]), limits["load"])
+    c.below("%d over the depth: mean load on the lowest patch in %.2f s from there, off P1 by" % (n, end), abs(load[0]),
+            limits["load"])
     c.below("%d over the depth: mean load on all three patches, off by" % n, abs(face), limits["face"])
     for name, value in heights.items():
-        c.below("%d over the depth: %s in the first 0.72 s, rms difference over the largest" % (n, name), value, limits[name])
+        c.below("%d over the depth: %s in the first 0.72 s, rms difference over the largest" % (n, name), value,
+                limits[name])
     for axis, name in zip(axes.flat, ("H2", "P1", "P2", "H4", "P3", "P4")):
         label = "%d particles over the depth" % n
         if name[0] == "H":

@@ -40,7 +40,8 @@ def lammps(out, name, model):
     """Velocities [n, 3]; model: lubrication yes or no, or points of a multiblob"""
     tag, lubrication, points = f"{name}_{model}", "no" if model == "no" else "yes", 12 if model == "12" else 1
     command = ["lmp", "-in", str(HERE / "in.dense_settling"), "-log", f"log.{tag}"]
-    finished("dense_settling", command + values(dict(path=f"{tag}.path", data=f"{name}.data", lubrication=lubrication, points=points)), out)
+    finished("dense_settling", command + values(dict(path=f"{tag}.path", data=f"{name}.data", lubrication=lubrication,
+                                                     points=points)), out)
     return np.loadtxt(out / f"{tag}.path", skiprows=9)[:, 1:4]
 
 
@@ -48,11 +49,12 @@ def draw(numbers, speeds, target):
     plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
     figure, axes = plt.subplots(figsize=(8, 4.5), layout="constrained")
     axes.axhline(1, color="k", lw=1)
-    for key, style, label in (("no", "v--C3", "model without lubrication"), ("sum", "s--C1", "exact pairs added in full"),
-                              ("yes", "o-C0", "lubrication yes"), ("12", "*-C2", "multiblob 12, lubrication yes")):
+    for key, style, label in (("no", "v--C3", "model without lubrication"),
+                              ("sum", "s--C1", "exact pairs added in full"), ("yes", "o-C0", "lubrication yes"),
+                              ("12", "*-C2", "multiblob 12, lubrication yes")):
         axes.plot(numbers, speeds[key], style, label=label)
-    axes.set(xlabel="spheres in the cluster, gaps of 0.01 to 0.02 radii", ylabel="speed of settling / exact", xticks=numbers,
-             ylim=(0.5, 1.25), title="Each pair holds fluid that its neighbours hold as well")
+    axes.set(xlabel="spheres in the cluster, gaps of 0.01 to 0.02 radii", ylabel="speed of settling / exact",
+             xticks=numbers, ylim=(0.5, 1.25), title="Each pair holds fluid that its neighbours hold as well")
     axes.legend()
     save(figure, target)
 
@@ -72,8 +74,9 @@ def main():
             errors[key].append(np.linalg.norm(v - exact) / np.linalg.norm(exact))
         speeds["sum"].append(-float(usual[name]["speed"]) / exact[:, 2].mean())
         errors["sum"].append(float(usual[name]["error"]))
-        print(f"  {len(x)} spheres: error {100 * errors['no'][-1]:.1f} % without, {100 * errors['sum'][-1]:.1f} % with the usual sum, "
-              f"{100 * errors['yes'][-1]:.2f} % with lubrication, {100 * errors['12'][-1]:.2f} % with multiblob 12", flush=True)
+        print(f"  {len(x)} spheres: error {100 * errors['no'][-1]:.1f} % without, {100 * errors['sum'][-1]:.1f} % with "
+              f"the usual sum, {100 * errors['yes'][-1]:.2f} % with lubrication, {100 * errors['12'][-1]:.2f} % "
+              "with multiblob 12", flush=True)
     draw(numbers, speeds, out / "dense_settling.png")
     print(f"picture: {out / 'dense_settling.png'}\n")
 
@@ -86,7 +89,8 @@ def main():
     c.within("27 spheres with the usual sum, per cent", last["sum"], 39, 41)
     c.below("27 spheres with lubrication, per cent", last["yes"], 1.2)
     c.holds("the usual sum becomes worse with every further neighbour", np.all(np.diff(errors["sum"]) > 0))
-    c.holds("from six spheres on it is worse than nothing", all(s > n for s, n in zip(errors["sum"][2:], errors["no"][2:])))
+    c.holds("from six spheres on it is worse than nothing",
+            all(s > n for s, n in zip(errors["sum"][2:], errors["no"][2:])))
     if given.update:
         shutil.copy(out / "dense_settling.png", HERE)
         shutil.copy(out / "log.cube27_0.02_yes", HERE / "log.dense_settling.1")

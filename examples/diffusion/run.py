@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Lets rods, discs and helices diffuse with in.diffusion and compares all that their motion says with their 6x6 mobility.
+"""Lets rods, discs and helices diffuse with in.diffusion and compares all that their motion says with their 6x6
+mobility.
 
     run.py --out DIR    results and the picture go to DIR (default: build/examples/diffusion)
     run.py --update     also refreshes the picture in this folder
 
-The mobility of each shape follows from the forces in its six rigid motions (../sedimentation/in.six_motions), where nothing is
-random. Of the run:
+The mobility of each shape follows from the forces in its six rigid motions (../sedimentation/in.six_motions), where
+nothing is random. Of the run:
   covariance of displacement and turn over a few steps, in the axes of the body, over twice the time
   mean square displacement of the centre of mobility, 6 D t
   <u(0).u(t)> of the axis of rod and disc, exp(-2 D_r t)
@@ -36,14 +37,15 @@ def cross(d):
     return np.array([[0, -d[2], d[1]], [d[2], 0, -d[0]], [-d[1], d[0], 0]])
 
 
-# --- the mobility, from six motions ---------------------------------------------------------------------------------------
+# --- the mobility, from six motions -----------------------------------------------------------------------------------
 
 def molecule(path, x):
     rows = [f"{k + 1} " for k in range(len(x))]
     with open(path, "w") as out:
         out.write(f"# of run.py\n\n{len(x)} atoms\n\nCoords\n\n")
         out.write("\n".join(r + "{:.15g} {:.15g} {:.15g}".format(*p) for r, p in zip(rows, x)))
-        out.write("\n\nTypes\n\n" + "\n".join(r + "1" for r in rows) + "\n\nDiameters\n\n" + "\n".join(r + "2" for r in rows) + "\n")
+        out.write("\n\nTypes\n\n" + "\n".join(r + "1" for r in rows) + "\n\nDiameters\n\n" +
+                  "\n".join(r + "2" for r in rows) + "\n")
 
 
 def mobility(out, name):
@@ -51,7 +53,8 @@ def mobility(out, name):
     x = SHAPES[name]
     molecule(out / f"{name}.mol", x)
     finished("diffusion", ["lmp", "-in", "in.six_motions", "-log", "none"] + values(
-        dict(clump=out / f"{name}.mol", model="rigid_clumps yes shell 42", out=out / f"{name}.motion")), HERE.parent / "sedimentation")
+        dict(clump=out / f"{name}.mol", model="rigid_clumps yes shell 42", out=out / f"{name}.motion")),
+             HERE.parent / "sedimentation")
     R = np.zeros((6, 6))
     for mode in range(6):
         (_, rows), = dumped(out / f"{name}.motion.{mode + 1}")
@@ -64,7 +67,7 @@ def mobility(out, name):
     return S @ N @ S.T, o
 
 
-# --- a run ----------------------------------------------------------------------------------------------------------------
+# --- a run ------------------------------------------------------------------------------------------------------------
 
 def turned_at_random(x, rng):
     q = rng.normal(size=4)
@@ -89,7 +92,8 @@ def diffuse(out, name):
 
 
 def poses(x, shape):
-    """Rotations from the shape to spheres at x [..., n, 3] (Kabsch 1976). A rod has no turn about itself; any will do."""
+    """Rotations from the shape to spheres at x [..., n, 3] (Kabsch 1976). A rod has no turn about itself; any will
+    do."""
     u, _, vt = np.linalg.svd(np.swapaxes(x - x.mean(axis=-2, keepdims=True), -1, -2) @ shape)
     u = u * np.stack([np.ones(u.shape[:-2]), np.ones(u.shape[:-2]), np.linalg.det(u @ vt)], axis=-1)[..., None, :]
     return u @ vt
@@ -101,14 +105,16 @@ class Run:
         self.N, self.axes = N, poses(x, shape)
         self.centre = x.mean(axis=2) + self.axes @ o
         self.t = t * np.arange(1, len(x) // 2)
-        self.msd = np.array([((self.centre[k:] - self.centre[:-k])**2).sum(axis=-1).mean() for k in range(1, len(x) // 2)])
+        self.msd = np.array([((self.centre[k:] - self.centre[:-k])**2).sum(axis=-1).mean()
+                             for k in range(1, len(x) // 2)])
         if name in AXIS:
             u = self.axes[..., AXIS[name]]
             if name == "rod":
                 u = x[:, :, -1] - x[:, :, 0]
                 u = u / np.linalg.norm(u, axis=-1, keepdims=True)
             self.turning = np.array([(u[k:] * u[:-k]).sum(axis=-1).mean() for k in range(1, len(x) // 2)])
-        # displacement and turn of each pair of frames, in the axes of the body halfway: by least squares from its spheres
+        # displacement and turn of each pair of frames, in the axes of the body halfway: by least squares from its
+        # spheres
         moved = np.swapaxes(self.axes[:-1], -1, -2) @ np.swapaxes(x[1:] - x[:-1], -1, -2)
         moved = np.swapaxes(moved, -1, -2).reshape(-1, shape.size)
         V = moved @ np.linalg.pinv(rigid_velocities(shape - o), rcond=1e-10).T
@@ -119,7 +125,7 @@ class Run:
         return np.sqrt((self.N[p, p] * self.N[q, q] + self.N[p, q]**2) / self.samples)
 
 
-# --- picture --------------------------------------------------------------------------------------------------------------
+# --- picture ----------------------------------------------------------------------------------------------------------
 
 def balls(axis, x, colour):
     for k in np.argsort(-x[:, 1]):
@@ -142,16 +148,20 @@ def draw(runs, path):
     msd, entries = figure.add_subplot(grid[:, 1]), figure.add_subplot(grid[:, 2])
     tilt = np.array([[1, 0, 0], [0, 0.75, -0.66], [0, 0.66, 0.75]])
     for k, (name, run) in enumerate(runs.items()):
-        balls(figure.add_subplot(grid[k, 0]), SHAPES[name] @ tilt.T if name == "disc" else SHAPES[name][:, [2, 1, 0]], COLOURS[name])
+        balls(figure.add_subplot(grid[k, 0]), SHAPES[name] @ tilt.T if name == "disc" else SHAPES[name][:, [2, 1, 0]],
+              COLOURS[name])
         D = np.trace(run.N[:3, :3]) / 3
-        msd.plot(run.t[::8], run.msd[::8] / (6 * D * run.t[::8]), "o", ms=4, color=COLOURS[name], label=f"{name}: displacement over 6 D t")
+        msd.plot(run.t[::8], run.msd[::8] / (6 * D * run.t[::8]), "o", ms=4, color=COLOURS[name],
+                 label=f"{name}: displacement over 6 D t")
         if name in AXIS:
             Dr = (run.N[3, 3] + run.N[4, 4]) / 2
-            msd.plot(run.t[::8], run.turning[::8], "s", ms=4, mfc="none", color=COLOURS[name], label=f"{name}: <u(0).u(t)>")
+            msd.plot(run.t[::8], run.turning[::8], "s", ms=4, mfc="none", color=COLOURS[name],
+                     label=f"{name}: <u(0).u(t)>")
             msd.plot(run.t, np.exp(-2 * Dr * run.t), "-", lw=1, color=COLOURS[name])
         unit = np.sqrt(np.outer(np.diag(run.N), np.diag(run.N)))
         upper = np.triu_indices(6 if name != "rod" else 5)
-        entries.plot((run.N / unit)[upper], (run.C / unit)[upper], "o", ms=5, color=COLOURS[name], label=name, alpha=0.8)
+        entries.plot((run.N / unit)[upper], (run.C / unit)[upper], "o", ms=5, color=COLOURS[name], label=name,
+                     alpha=0.8)
     msd.axhline(1, color="0.6", lw=0.8)
     msd.set_ylim(0, 1.15)
     msd.set_xlabel(r"time, $\eta$ a$^3$/kT")
@@ -164,7 +174,7 @@ def draw(runs, path):
     save(figure, path)
 
 
-# --- what must hold -------------------------------------------------------------------------------------------------------
+# --- what must hold ---------------------------------------------------------------------------------------------------
 
 def check(c, name, run):
     moving = 6 if name != "rod" else 5
@@ -176,7 +186,8 @@ def check(c, name, run):
     worst = max(abs(C[p, q] - N[p, q]) / run.deviation(p, q) for p in range(moving) for q in range(p, moving))
     c.below(f"{name}: worst entry of the 6x6, in standard deviations", worst, 5.0)
     k = len(run.t) // 2
-    c.near(f"{name}: mean square displacement at t = {run.t[k]:.3g} over 6 D t", run.msd[k] / (6 * D * run.t[k]), 1.0, 0.08)
+    c.near(f"{name}: mean square displacement at t = {run.t[k]:.3g} over 6 D t", run.msd[k] / (6 * D * run.t[k]), 1.0,
+           0.08)
     if name in AXIS:
         exact = np.exp(-2 * (N[3, 3] + N[4, 4]) / 2 * run.t[k])
         c.near(f"{name}: <u(0).u(t)> there", run.turning[k], exact, 0.04)
@@ -191,8 +202,9 @@ def main():
         runs[name] = run = Run(name, diffuse(given.out, name), N, o)
         turns = 5 if name == "rod" else 6
         coupling, found = np.abs(N[:3, 3:]).max(), np.abs(run.C[:3, 3:turns]).max()
-        print(f"  {name}: D {np.trace(run.C[:3, :3]) / 3:.6f}, exact {np.trace(N[:3, :3]) / 3:.6f}; largest coupling of turn and "
-              f"displacement {found:.6f}, exact {coupling:.6f}; {run.samples} steps", flush=True)
+        print(f"  {name}: D {np.trace(run.C[:3, :3]) / 3:.6f}, exact {np.trace(N[:3, :3]) / 3:.6f}; "
+              f"largest coupling of turn and displacement {found:.6f}, exact {coupling:.6f}; {run.samples} steps",
+              flush=True)
     draw(runs, given.out / "diffusion.png")
     if given.update:
         shutil.copy(given.out / "diffusion.png", HERE)

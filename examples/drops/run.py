@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Runs drops: Laplace's pressure, the mode n = 2 against the linear solution of a viscous drop, contact angles; and a jet that breaks up,
-by the rates at which waves on it grow. After: . build/env.sh"""
+"""Runs drops: Laplace's pressure, the mode n = 2 against the linear solution of a viscous drop, contact angles; and a
+jet that breaks up, by the rates at which waves on it grow. After: . build/env.sh"""
 import os
 import sys
 
@@ -31,13 +31,15 @@ def ring(n, mu, time, rest=6):
     pressure = run["v_p"][0] * R    # of the first row of this run, before it has moved
     table.append((n, mu, pressure, fit[0] / w, fit[1] / g))
     c.near("%d across, Ohnesorge number %g: frequency of n = 2, over exact" % (n, mu), table[-1][3], 1.0, 0.02)
-    c.near("%d across, Ohnesorge number %g: its damping, over exact" % (n, mu), table[-1][4], 1.0, 0.15 if S.QUICK else 0.10)
+    c.near("%d across, Ohnesorge number %g: its damping, over exact" % (n, mu), table[-1][4], 1.0,
+           0.15 if S.QUICK else 0.10)
     c.near("%d across: pressure at rest, over sigma/R" % n, pressure, 1.0, 0.05)
     return S.dump(os.path.join(out, "drops.dump"))
 
 
 def wall(angle, n, time):
-    out, run = S.lmp(folder, "drops", "wall%g" % angle, scene="wall", n=n, angle=angle, rest=0.8 * time, time=0.2 * time)
+    out, run = S.lmp(folder, "drops", "wall%g" % angle, scene="wall", n=n, angle=angle, rest=0.8 * time,
+                     time=0.2 * time)
     late = angle_of(run["v_high"].mean(), run["v_count"][-1] * 4 / n**2)
     c.near("contact angle where %g is asked for" % angle, late, angle, 8 if S.QUICK else 6)
     return late, S.dump(os.path.join(out, "drops.dump"))[-1]
@@ -89,12 +91,14 @@ broken, axes = plt.subplots(4, 1, figsize=(6, 5))
 for axis, shot in zip(axes, [shots[k] for k in (0, 8, 12, 16)]):
     order, long = np.argsort(shot["z"]), 2 * np.pi / 0.7
     for k in range(2):
-        axis.scatter(shot["x"][order] + k * long, shot["y"][order], s=2, c=shot["vx"][order], cmap="coolwarm", vmin=-0.5, vmax=0.5)
+        axis.scatter(shot["x"][order] + k * long, shot["y"][order], s=2, c=shot["vx"][order], cmap="coolwarm",
+                     vmin=-0.5, vmax=0.5)
     axis.set(aspect="equal", xticks=[], yticks=[], xlim=(0, 2 * long), ylim=(-2, 2))
 broken.tight_layout()
 broken.savefig(os.path.join(out, "jet.png"), dpi=80)
 figure.savefig(os.path.join(out, "drops.png"), dpi=90)
-S.keep(folder, out, "drops.png", "| particles across | Ohnesorge number | pressure | frequency | damping |\n|---|---|---|---|---|\n" +
+S.keep(folder, out, "drops.png", "| particles across | Ohnesorge number | pressure | frequency | damping |\n"
+                                 "|---|---|---|---|---|\n" +
        "".join("| %d | %g | %.3f | %.3f | %.3f |\n" % row for row in table))
 S.keep(folder, out, "jet.png", "| wave length over R | rate | exact |\n|---|---|---|\n" +
        "".join("| %.2f | %.3f | %.3f |\n" % (2 * np.pi / k, rate, right) for k, rate, right in waves) +

@@ -22,13 +22,15 @@ PANELS = {"none": "each sphere alone\n(Stokes drag)", "all": "all spheres feel\n
 
 def fall(out, interactions, **variables):
     command = ["lmp", "-in", "in.falling_cloud", "-log", f"log.{interactions}", "-nocite"]
-    said = finished("falling_cloud", command + values(dict(interactions=interactions, out=".", spheres=SPHERES, R=RADIUS, time=TIME,
-                                                           **variables)), out)
+    said = finished("falling_cloud",
+                    command + values(dict(interactions=interactions, out=".", spheres=SPHERES, R=RADIUS, time=TIME,
+                                          **variables)), out)
     return thermo(said, "Step Time v_speed"), [frame[:, 1:] for _, frame in dumped(out / f"film.{interactions}")]
 
 
 def frame(positions, upper, time):
-    """One picture of the film: both clouds at one time, near spheres before far ones. upper: who began in the upper half."""
+    """One picture of the film: both clouds at one time, near spheres before far ones. upper: who began in the upper
+    half."""
     figure, axes = plt.subplots(1, 2, figsize=(4.6, 5.6), dpi=90, sharey=True)
     figure.subplots_adjust(0.01, 0.01, 0.99, 0.9, wspace=0.02)
     for side, (name, title) in zip(axes, PANELS.items()):
@@ -43,7 +45,8 @@ def frame(positions, upper, time):
 
 def moving(paths, times, path):
     start = paths["all"][0][:, 2]
-    pictures = [frame({name: frames[k] for name, frames in paths.items()}, start > start.mean(), time) for k, time in enumerate(times)]
+    pictures = [frame({name: frames[k] for name, frames in paths.items()}, start > start.mean(), time)
+                for k, time in enumerate(times)]
     film.write(pictures, path)
 
 
@@ -55,14 +58,18 @@ def main():
     for name in PANELS:
         rows[name], paths[name] = fall(given.out, name)
     c.near("each sphere alone: speed of the cloud", rows["none"][-1, 2], 1.0, 1e-9)
-    # N point forces spread evenly in a sphere of radius R (Ekiel-Jezewska, Metzger & Guazzelli, Phys. Fluids 18, 038104 (2006))
+    # N point forces spread evenly in a sphere of radius R (Ekiel-Jezewska, Metzger & Guazzelli, Phys. Fluids 18, 038104
+    # (2006))
     predicted = 1 + 1.2 * SPHERES / RADIUS
-    c.near("all feel each other: speed at first, over that of an even ball of point forces", rows["all"][0, 2] / predicted, 1.0, 0.05)
+    c.near("all feel each other: speed at first, over that of an even ball of point forces",
+           rows["all"][0, 2] / predicted, 1.0, 0.05)
     fallen = {name: table[-1, 3] - table[0, 3] for name, table in rows.items()}
-    c.within("all feel each other: how many times farther the cloud has fallen", fallen["all"] / fallen["none"], 40.0, 42.0)
+    c.within("all feel each other: how many times farther the cloud has fallen", fallen["all"] / fallen["none"], 40.0,
+             42.0)
     moving(paths, rows["all"][:, 1], given.out / "falling_cloud.gif")
     c.below("size of the moving picture, MB", (given.out / "falling_cloud.gif").stat().st_size / 1e6, 2.0)
-    c.holds("the moving picture has a frame for each time", film.frames(given.out / "falling_cloud.gif") == len(paths["all"]))
+    c.holds("the moving picture has a frame for each time", film.frames(given.out / "falling_cloud.gif") ==
+            len(paths["all"]))
     if given.update:
         shutil.copy(given.out / "falling_cloud.gif", HERE)
         shutil.copy(given.out / "log.all", HERE / "log.falling_cloud.1")

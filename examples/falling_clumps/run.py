@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""30 rigid chains of five spheres fall without inertia, as all feel each other and each as if it were alone; a film of both.
+"""30 rigid chains of five spheres fall without inertia, as all feel each other and each as if it were alone; a film of
+both.
 
     run.py --out DIR    results and the picture go to DIR (default: build/examples/falling_clumps)
     run.py --update     also refreshes the pictures in this folder
@@ -21,7 +22,8 @@ FINE = 5    # frames of the film per time
 
 
 def lammps(out, tag, ranks=1, **variables):
-    """Frames [time, spheres, (molecule x y z vx vy vz)] and the curve: time, speed, centre, products, not converged, gap"""
+    """Frames [time, spheres, (molecule x y z vx vy vz)] and the curve: time, speed, centre, products, not converged,
+    gap"""
     (out / tag).mkdir(parents=True, exist_ok=True)
     for name in ("in.falling_clumps", "chain5.mol"):
         shutil.copy(HERE / name, out / tag)
@@ -34,7 +36,8 @@ def lammps(out, tag, ranks=1, **variables):
 
 
 def point_forces(spheres, own):
-    """Mean settling speed of points of weight 5 in the places of the clumps: their own speed, and Oseen's tensor of the others"""
+    """Mean settling speed of points of weight 5 in the places of the clumps: their own speed, and Oseen's tensor of the
+    others"""
     c = spheres[:, 1:4].reshape(-1, 5, 3).mean(axis=1)
     r = c[:, None] - c[None]
     s = np.linalg.norm(r, axis=2)
@@ -56,7 +59,8 @@ def strip(rows, path):
             x, y, z = frames[t, :, 1:4].T
             middle = z.mean()
             for k in np.argsort(-y):
-                axis.add_patch(plt.Circle((x[k], z[k] - middle), 1.0, fc=f"C{int(frames[t, k, 0]) % 10}", ec="black", lw=0.3))
+                axis.add_patch(plt.Circle((x[k], z[k] - middle), 1.0, fc=f"C{int(frames[t, k, 0]) % 10}", ec="black",
+                                          lw=0.3))
             axis.set(xlim=(-20, 20), ylim=(-20, 20), aspect="equal", xticks=[], yticks=[])
             axis.set_xlabel(f"{-middle:.0f} below" if t else "")
             if row[0] is axes[0, 0]:
@@ -74,7 +78,8 @@ def moving(rows, path):
         for axis, (title, frames) in zip(axes, rows):
             x, y, z = frames[k, :, 1:4].T
             for i in np.argsort(-y):
-                axis.add_patch(plt.Circle((x[i], z[i] - z.mean()), 1.0, fc=f"C{int(frames[k, i, 0]) % 10}", ec="black", lw=0.3))
+                axis.add_patch(plt.Circle((x[i], z[i] - z.mean()), 1.0, fc=f"C{int(frames[k, i, 0]) % 10}", ec="black",
+                                          lw=0.3))
             axis.set(xlim=(-20, 20), ylim=(-20, 20), aspect="equal", xticks=[], yticks=[])
             axis.set_title(f"{title}, {-z.mean():.0f} radii below", fontsize=9)
         pictures.append(film.picture(figure))
@@ -98,7 +103,8 @@ def main():
     speed, own = curve[at_rest, 1].mean(), lonely[at_rest, 1].mean()
     points = point_forces(together[0], own)
     v, v_exact = together[0, :, 4:], exact[0, :, 4:]
-    print(f"  speed {speed:.3f}, each alone {own:.4f}, point forces {points:.3f}; products per step {curve[:, 3].mean():.2f}")
+    print(f"  speed {speed:.3f}, each alone {own:.4f}, point forces {points:.3f}; "
+          f"products per step {curve[:, 3].mean():.2f}")
     print(f"picture: {out / 'falling_clumps.png'}\n")
     c = Checks()
     c.near("speed as all feel each other, in that of a lone sphere", speed, 14.55, 0.05)
@@ -106,7 +112,8 @@ def main():
     c.near("how often faster", speed / own, 6.53, 0.05)
     c.within("over the speed of point forces in the same places", speed / points, 0.9, 1.02)
     c.near("speed at the end", curve[-5:, 1].mean(), 13.93, 0.2)
-    c.below("error of the velocities at relative_tolerance 1e-3, of the largest", np.abs(v - v_exact).max() / np.abs(v_exact).max(), 3e-4)
+    c.below("error of the velocities at relative_tolerance 1e-3, of the largest",
+            np.abs(v - v_exact).max() / np.abs(v_exact).max(), 3e-4)
     c.below("products with the mobility a step, mean", curve[:, 3].mean(), 3.0)
     c.below("steps whose solve did not converge", curve[-1, 4], 0)
     c.below("largest change of a distance within a chain, in radii", max(bend(together), bend(alone)), 1e-11)

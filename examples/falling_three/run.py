@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Three and two spheres fall without inertia: paths of fix stokes_dynamics/overdamped with one point per sphere against converged ones
-of the same model, which are computed here; with multiblobs beside exact and published ones.
+"""Three and two spheres fall without inertia: paths of fix stokes_dynamics/overdamped with one point per sphere against
+converged ones of the same model, which are computed here; with multiblobs beside exact and published ones.
 
     run.py --out DIR        results and the picture go to DIR (default: build/examples/falling_three)
     run.py --update         also refreshes the picture in this folder
-    run.py --figure FILE    FILE: the whole published figure, rows "x, z" (see figure5.csv); also prints the distances to it
+    run.py --figure FILE    FILE: the whole published figure, rows "x, z" (see figure5.csv); also prints the distances
+                            to it
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
@@ -58,7 +59,8 @@ def runge_kutta(x, end, n):
 def lammps(out, tag, **variables):
     """Places and velocities [frames, spheres, 6]"""
     path = out / f"{tag}.path"
-    command = ["stdbuf", "-oL", "lmp", "-in", "in.falling_three", "-log", str(out / f"log.{tag}"), "-var", "path", str(path)]
+    command = ["stdbuf", "-oL", "lmp", "-in", "in.falling_three", "-log", str(out / f"log.{tag}"), "-var", "path",
+               str(path)]
     finished("falling_three", command + values(variables), HERE)
     return np.array([rows[:, 1:] for _, rows in dumped(path)])
 
@@ -93,7 +95,8 @@ def draw(paths, figure5, errors, target):
     for scheme, marker in (("ab2", "o-"), ("euler", "s-")):
         steps, e = np.array(errors[scheme]).T
         right.loglog(steps, e, marker, label=scheme)
-    right.set(xlabel="time step, in radii of fall of a lone sphere", ylabel="largest error of a place at t = 100 / radius",
+    right.set(xlabel="time step, in radii of fall of a lone sphere",
+              ylabel="largest error of a place at t = 100 / radius",
               title="Adams-Bashforth and Euler")
     right.grid(alpha=0.3)
     right.legend()
@@ -125,7 +128,8 @@ def main():
     if given.figure:
         whole = np.loadtxt(given.figure, delimiter=",")
         for name, p in paths.items():
-            print(f"  {name}: median sideways distance to the whole figure, each 100 radii: " + " ".join(f"{d:.2f}" for d in medians(whole, p)))
+            print(f"  {name}: median sideways distance to the whole figure, each 100 radii: " +
+                  " ".join(f"{d:.2f}" for d in medians(whole, p)))
     print(f"picture: {out / 'falling_three.png'}\n")
 
     c = Checks()
@@ -144,8 +148,10 @@ def main():
         c.below(f"{name}: the same from -100 to -200", far, second)
     for name, low, high in (("one point", 0.35, 0.45), ("multiblob 12", 0.0, 0.05), ("multiblob 42", 0.0, 0.05)):
         place = paths[name][at_end, :, :3:2]
-        c.within(f"{name}: largest distance to exact Stokes flow at t = 200, in radii", np.abs(place - EXACT).max(), low, high)
-    deep = [np.array([np.interp(600, -p[:, k, 2], p[:, k, 0]) for k in range(3)]) for p in (paths["multiblob 12"], paths["multiblob 42"])]
+        c.within(f"{name}: largest distance to exact Stokes flow at t = 200, in radii", np.abs(place - EXACT).max(),
+                 low, high)
+    deep = [np.array([np.interp(600, -p[:, k, 2], p[:, k, 0]) for k in range(3)])
+            for p in (paths["multiblob 12"], paths["multiblob 42"])]
     c.below("multiblob 12 beside 42 at a depth of 600, largest distance in radii", np.abs(deep[0] - deep[1]).max(), 0.5)
     if given.update:
         shutil.copy(out / "falling_three.png", HERE)

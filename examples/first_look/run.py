@@ -69,7 +69,8 @@ def picture(paths, path):
             for x, y, z in sorted(pose, key=lambda sphere: -sphere[1]):
                 axes.add_patch(plt.Circle((x0 + x, z), 1, fc=f"C{k}", ec="k", lw=0.6, alpha=0.9))
         axes.text(x0, 4.2, name, ha="center")
-    axes.text(31.5, -TIME, " without the\n fluid between\n the spheres\n all would be here", va="center", fontsize="small")
+    axes.text(31.5, -TIME, " without the\n fluid between\n the spheres\n all would be here", va="center",
+              fontsize="small")
     axes.set(aspect="equal", xlim=(-4, 40), ylim=(-23, 6), ylabel="height / radius", xticks=[])
     for side in ("top", "right", "bottom"):
         axes.spines[side].set_visible(False)
@@ -95,13 +96,16 @@ def main():
     print()
     c.near("a sphere settles with Stokes' speed", speeds["a sphere"], 1.0, 1e-9)
     tetrahedron = 4 / (np.trace(exact_drag("tetrahedron")) / 3)
-    c.near("a tetrahedron: speed against exact Stokes flow, %", 100 * (speeds["a tetrahedron"] / tetrahedron - 1), 0.0, 0.2)
+    c.near("a tetrahedron: speed against exact Stokes flow, %", 100 * (speeds["a tetrahedron"] / tetrahedron - 1), 0.0,
+           0.2)
     row = paths["three in a row"].mean(axis=1)
     moved = row[-1] - row[0]
     along, across = (3 / drag for drag in (1.541386898, 1.839973583))    # exact, sedimentation/data/chains_exact.csv
-    c.near("three in a row: speed against exact Stokes flow, %", 100 * (-moved[2] / TIME / (0.5 * (along + across)) - 1), 0.0, 0.2)
+    c.near("three in a row: speed against exact Stokes flow, %",
+           100 * (-moved[2] / TIME / (0.5 * (along + across)) - 1), 0.0, 0.2)
     drift = np.degrees(np.arctan2(abs(moved[0]), -moved[2]))
-    c.near("three in a row: drift to the side, degrees", drift, np.degrees(np.arctan((along - across) / (along + across))), 0.1)
+    c.near("three in a row: drift to the side, degrees", drift,
+           np.degrees(np.arctan((along - across) / (along + across))), 0.1)
     L = paths["an L"]
     c.holds("the L turns as it falls", abs(np.cross(L[0, 2] - L[0, 0], L[-1, 2] - L[-1, 0])[1]) > 1.0)
     picture(paths, given.out / "first_look.png")

@@ -1,15 +1,16 @@
-"""Linear theory of a box that floats in a tank: incompressible, inviscid, small motions. By symmetry half of the tank, in square cells:
-the potential of the flow from its values at the free surface and the velocity w of the box,
+"""Linear theory of a box that floats in a tank: incompressible, inviscid, small motions. By symmetry half of the tank,
+in square cells: the potential of the flow from its values at the free surface and the velocity w of the box,
 
-    eta_t = phi_y, phi_t = - g eta at the free surface;   M w_t = - g b z - int phi_t dx - (M - M_0) g    (density of water 1)
+    eta_t = phi_y, phi_t = - g eta at the free surface;   M w_t = - g b z - int phi_t dx - (M - M_0) g
+    (density of water 1)
 
 for a box of the width b and the mass M that begins at the draft of M_0, at rest."""
 import numpy as np
 
 
 def potentials(d, wide, deep, half, draft):
-    """Cells of size d. Solves the Laplace equation for one surface value after the other, and for w = 1. Returns phi_y at the surface and
-    phi at the bottom of the box, for each."""
+    """Cells of size d. Solves the Laplace equation for one surface value after the other, and for w = 1. Returns phi_y
+    at the surface and phi at the bottom of the box, for each."""
     nx, ny, nb, nd = (int(round(q / d)) for q in (wide, deep, half, draft))
     number = -np.ones((nx, ny), int)
     fluid = np.ones((nx, ny), bool)

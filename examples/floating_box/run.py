@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Runs floating_box: draft at rest, heave of a box that is made heavier, against Archimedes and linear theory. After: . build/env.sh"""
+"""Runs floating_box: draft at rest, heave of a box that is made heavier, against Archimedes and linear theory. After: .
+build/env.sh"""
 import os
 import sys
 
@@ -11,7 +12,8 @@ from runs import np  # noqa: E402
 
 c, plt = S.Checks(), S.pyplot()
 CASES = ((40, 0.05),) if S.QUICK else ((40, 0.05), (80, 0.03))
-table = "| particles over the box | draft at rest, spacings off | heave period over linear theory | swing of the third period over it |\n|---|---|---|---|\n"
+table = ("| particles over the box | draft at rest, spacings off | heave period over linear theory |"
+         " swing of the third period over it |\n|---|---|---|---|\n")
 figure, axis = plt.subplots(figsize=(7, 3.6))
 exact_t, exact = linear.heave(0.036, 0.03)
 NEW = -0.2 * 0.03 / 0.3 * 0.7    # the draft of a tenth of the mass more; the water rises by 0.3 of it

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""One grain falls, and a cloud of grains: speeds beside the law of drag and the flow of Stokes's equation averaged over h. After: . build/env.sh"""
+"""One grain falls, and a cloud of grains: speeds beside the law of drag and the flow of Stokes's equation averaged over
+h. After: . build/env.sh"""
 import os
 import sys
 
@@ -18,19 +19,20 @@ def drag(d, mu, U):
 
 
 def averages(h, k):
-    """Of waves k: what is left of them in the mean over Wendland's kernel, W, and the part S of mu k^2 that the friction of SPH has (its integral over the
-    kernel, in 1 - sin x/x and its like)."""
+    """Of waves k: what is left of them in the mean over Wendland's kernel, W, and the part S of mu k^2 that the
+    friction of SPH has (its integral over the kernel, in 1 - sin x/x and its like)."""
     r = np.linspace(0, 2, 801)[1:]
     dr, kh = r[1] - r[0], np.maximum(k * h, 1e-6)[:, None]
     kernel, slope = (1 - r / 2) ** 4 * (2 * r + 1) * 21 / (16 * np.pi), 5 * r * (1 - r / 2) ** 3 * 21 / (16 * np.pi)
     x = kh * r
     along = np.where(x > 0.02, (np.sin(x) / x - np.cos(x)) / x**2, 1 / 3 - x * x / 30)
-    return (4 * np.pi * dr * (r * r * kernel * np.sinc(x / np.pi)).sum(1), 40 * np.pi * dr * (r * slope * (1 / 3 - along)).sum(1) / kh[:, 0] ** 2)
+    return (4 * np.pi * dr * (r * r * kernel * np.sinc(x / np.pi)).sum(1),
+            40 * np.pi * dr * (r * slope * (1 / 3 - along)).sum(1) / kh[:, 0] ** 2)
 
 
 def speed_of_all(places, L, h, mu, F):
-    """Mean velocity of grains in the flow of each other and of all images, in water at rest in the mean: Stokes's equation, wave by wave; h None: not
-    averaged."""
+    """Mean velocity of grains in the flow of each other and of all images, in water at rest in the mean: Stokes's
+    equation, wave by wave; h None: not averaged."""
     n = np.stack(np.meshgrid(*[np.arange(-12, 13)] * 3, indexing="ij"), -1).reshape(-1, 3) * 2 * np.pi / L
     n = n[(n != 0).any(1)]
     k = np.linalg.norm(n, axis=1)
@@ -39,17 +41,19 @@ def speed_of_all(places, L, h, mu, F):
     return F / (mu * L**3) * ((1 - (n[:, 2] / k) ** 2) * W**2 / (k**2 * friction) * others).sum()
 
 
-# --- one grain ---------------------------------------------------------------------------------------------------------------
+# --- one grain --------------------------------------------------------------------------------------------------------
 
 rows, U = [], 0.5
 for Re, h_over_d in ((10, 2), (10, 4), (200, 2), (200, 4)) if not S.QUICK else ((200, 2), (200, 4)):
     d = 2 / h_over_d
     mu = U * d / Re
-    out, run = S.lmp(folder, "grain_cloud", "one", grains=1, L=12, radius=1, diameter=d, mu=mu, force=drag(d, mu, U), start=U, c=5, dt=0.06, steps=200)
+    out, run = S.lmp(folder, "grain_cloud", "one", grains=1, L=12, radius=1, diameter=d, mu=mu, force=drag(d, mu, U),
+                     start=U, c=5, dt=0.06, steps=200)
     rows.append((Re, h_over_d, run["v_speed"][-1] / U))
-    c.near("Re = %d, h = %d d: speed of a grain over that of the law" % (Re, h_over_d), rows[-1][2], 1.0, 0.02 if Re == 10 else 0.012)
+    c.near("Re = %d, h = %d d: speed of a grain over that of the law" % (Re, h_over_d), rows[-1][2], 1.0,
+           0.02 if Re == 10 else 0.012)
 
-# --- a cloud -----------------------------------------------------------------------------------------------------------------
+# --- a cloud ----------------------------------------------------------------------------------------------------------
 
 N, R, L, F, mu, d = 150, 4.0, 20.0, 0.02, 1.0, 0.5
 out, run = S.lmp(folder, "grain_cloud", "cloud", steps=120 if S.QUICK else 400)
@@ -58,7 +62,8 @@ places = np.stack([shots[-1][name][shots[-1]["type"] == 2] for name in ("x", "y"
 alone, speed = F / (3 * np.pi * mu * d), run["v_speed"][-1]
 averaged, points = [alone + speed_of_all(places, L, h, mu, F) for h in (2.0, None)]
 drop = alone + N * F / (5 * np.pi * mu * R)
-print("  cloud %.5f; averaged over h %.5f; not averaged %.5f; a drop without images %.5f; a lone grain %.5f" % (speed, averaged, points, drop, alone))
+print("  cloud %.5f; averaged over h %.5f; not averaged %.5f; a drop without images %.5f; a lone grain %.5f" %
+      (speed, averaged, points, drop, alone))
 c.holds("the cloud falls more than four times as fast as a lone grain", speed > 4 * alone)
 c.below("it stays together: its height at last over that at first",
         (run["c_high"] - run["c_low"])[-1] / (run["c_high"] - run["c_low"])[0], 1.1)
@@ -81,8 +86,10 @@ axes[2].set(xlabel="time", ylabel="speed", ylim=(0, None))
 axes[2].legend(frameon=False, fontsize=8)
 figure.tight_layout()
 figure.savefig(os.path.join(out, "grain_cloud.png"), bbox_inches="tight")
-table = "| Re | h/d | speed over that of the law |\n|---|---|---|\n" + "".join("| %d | %d | %.3f |\n" % row for row in rows)
-table += "\n| | speed |\n|---|---|\n| cloud of 150 grains, h = R/2 | %.4f |\n| Stokes's equation, averaged over h | %.4f |\n" % (speed, averaged)
+table = "| Re | h/d | speed over that of the law |\n|---|---|---|\n" + "".join("| %d | %d | %.3f |\n" % row
+                                                                               for row in rows)
+table += ("\n| | speed |\n|---|---|\n| cloud of 150 grains, h = R/2 | %.4f |\n"
+          "| Stokes's equation, averaged over h | %.4f |\n" % (speed, averaged))
 table += "| not averaged | %.4f |\n| a drop without images | %.4f |\n| a lone grain | %.4f |\n" % (points, drop, alone)
 S.keep(folder, out, "grain_cloud.png", table)
 sys.exit(c.finish())

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Settling, short-time diffusion and high-frequency viscosity of hard spheres at equilibrium, all from the same places, beside the
-published fits.
+"""Settling, short-time diffusion and high-frequency viscosity of hard spheres at equilibrium, all from the same places,
+beside the published fits.
 
-    run.py --out DIR         one set of places for each volume fraction; picture from sets.csv; to DIR (default: build/examples/hard_spheres)
+    run.py --out DIR         one set of places for each volume fraction; picture from sets.csv; to DIR (default:
+                             build/examples/hard_spheres)
     run.py --sets 24         as many sets as the kept table has, with 42 points for every sixth of them (half an hour)
     run.py --sets 24 --update     also refreshes sets.csv and the picture in this folder
 
@@ -29,16 +30,18 @@ MARKS = {"one point": ("^", "C1"), "multiblob 12": ("o", "C0"), "multiblob 42": 
 WHAT = {"K": "settling", "D": "short-time self-diffusion", "eta": "high-frequency viscosity"}
 # Largest distance to the fits at each volume fraction, per cent, beside twice the standard error
 LIMITS = {
-    ("multiblob 12", "K"): (1, 1, 2, 3, 11), ("multiblob 12", "D"): (1, 1, 1, 1.5, 3), ("multiblob 12", "eta"): (1, 1, 1, 1, 3),
-    ("multiblob 42", "K"): (1, 1, 2, 2, 4), ("multiblob 42", "D"): (1, 1, 1, 1.5, 3), ("multiblob 42", "eta"): (1, 1, 1, 1, 3),
+    ("multiblob 12", "K"): (1, 1, 2, 3, 11), ("multiblob 12", "D"): (1, 1, 1, 1.5, 3),
+    ("multiblob 12", "eta"): (1, 1, 1, 1, 3), ("multiblob 42", "K"): (1, 1, 2, 2, 4),
+    ("multiblob 42", "D"): (1, 1, 1, 1.5, 3), ("multiblob 42", "eta"): (1, 1, 1, 1, 3),
 }
 
 
-# --- published fits, relative to a lone sphere and to the fluid ------------------------------------------------------------
+# --- published fits, relative to a lone sphere and to the fluid -------------------------------------------------------
 
 
 def settling(phi):
-    """Riest, Eckert, Richtering & Naegele, Soft Matter 11, 2821 (2015), to multipole simulations of Abade et al. (2010)"""
+    """Riest, Eckert, Richtering & Naegele, Soft Matter 11, 2821 (2015), to multipole simulations of Abade et al.
+    (2010)"""
     return 1 - 6.5464 * phi * (1 - 3.348 * phi + 7.426 * phi**2 - 10.034 * phi**3 + 5.882 * phi**4)
 
 
@@ -56,11 +59,12 @@ def viscosity(phi):
 FITS = {"K": settling, "D": diffusion, "eta": viscosity}
 
 
-# --- one set of places ------------------------------------------------------------------------------------------------------
+# --- one set of places ------------------------------------------------------------------------------------------------
 
 
 def measured(lammps, model, x, edge, seed):
-    """K, D and eta in the box. D: the trace of the mobility, from forces of +1 and -1 at random, the same for every model"""
+    """K, D and eta in the box. D: the trace of the mobility, from forces of +1 and -1 at random, the same for every
+    model"""
     lammps.place(x, MODELS[model], edge, tolerance=1e-3)
     along = np.eye(3)
     K = np.mean([lammps.velocities(np.tile(e, (N, 1))) @ e for e in along])
@@ -93,9 +97,9 @@ def columns(rows):
 
 
 def endless(found, phi, model, what):
-    """Mean and its standard error, without a box: to K and D, what waves longer than the box add, 1.7601 S(0) (phi/N)^(1/3) and with 1
-    for S(0), in a fluid of the suspension's viscosity (Ladd, J. Chem. Phys. 93, 3484 (1990)). 42 points, which have some of the sets only:
-    by their difference to 12 on the same places"""
+    """Mean and its standard error, without a box: to K and D, what waves longer than the box add, 1.7601 S(0)
+    (phi/N)^(1/3) and with 1 for S(0), in a fluid of the suspension's viscosity (Ladd, J. Chem. Phys. 93, 3484 (1990)).
+    42 points, which have some of the sets only: by their difference to 12 on the same places"""
     sample = found[phi, model, what]
     if model == "multiblob 42":
         twelve = found[phi, "multiblob 12", what]
@@ -105,7 +109,8 @@ def endless(found, phi, model, what):
         value, error = sample.mean(), standard_error(sample)
     if what == "eta":
         return value, error
-    thick = found[phi, "multiblob 12" if model == "one point" else model, "eta"].mean()     # films make it as viscous as shells do
+    # films make it as viscous as shells do
+    thick = found[phi, "multiblob 12" if model == "one point" else model, "eta"].mean()
     return value + 1.7601 * (phi / N)**(1 / 3) / thick * (compressibility(phi) if what == "K" else 1.0), error
 
 
@@ -113,7 +118,7 @@ def standard_error(sample):
     return np.std(sample, ddof=1) / len(sample)**0.5
 
 
-# --- picture and figures ----------------------------------------------------------------------------------------------------
+# --- picture and figures ----------------------------------------------------------------------------------------------
 
 
 def draw(found, path):
@@ -125,7 +130,8 @@ def draw(found, path):
         for model, (mark, colour) in MARKS.items():
             if (PHIS[0], model, what) in found and not (model == "one point" and what == "eta"):
                 y, error = np.array([endless(found, p, model, what) for p in PHIS]).T
-                panel.errorbar(PHIS, y, 2 * error, fmt=mark, color=colour, ms=6 if model == "multiblob 12" else 4, label="one point, lubrication" if model == "one point" else model)
+                panel.errorbar(PHIS, y, 2 * error, fmt=mark, color=colour, ms=6 if model == "multiblob 12" else 4,
+                               label="one point, lubrication" if model == "one point" else model)
         panel.set(title=name, xlabel="volume fraction", yscale="log")
         panel.legend(fontsize=8)
     panels[0].set(ylabel="over a lone sphere", ylim=(0.03, 1.1))
@@ -138,23 +144,25 @@ def draw(found, path):
 
 
 def write(rows, path):
-    lines = ["# Hard spheres, N = 500, in the box: settling, self-diffusion, viscosity; pressure from the contacts. run.py --sets 24 --update",
+    lines = ["# Hard spheres, N = 500, in the box: settling, self-diffusion, viscosity; pressure from the contacts. "
+             "run.py --sets 24 --update",
              "phi,set,model,K,D,eta,pressure"]
-    lines += [f"{r['phi']},{r['set']},{r['model']},{r['K']:.6f},{r['D']:.6f},{r['eta']:.5f},{r['pressure']:.3f}" for r in rows]
+    lines += [f"{r['phi']},{r['set']},{r['model']},{r['K']:.6f},{r['D']:.6f},{r['eta']:.5f},{r['pressure']:.3f}"
+              for r in rows]
     path.write_text("\n".join(lines) + "\n")
 
 
 def check_table(c, found):
     for phi in PHIS:
         contact = found[phi, "multiblob 12", "pressure"]
-        c.near(f"phi {phi}: pressure by the contacts, over that of Carnahan & Starling", contact.mean() / pressure(phi), 1,
-               0.05 + 2 * standard_error(contact) / pressure(phi))
+        c.near(f"phi {phi}: pressure by the contacts, over that of Carnahan & Starling", contact.mean() / pressure(phi),
+               1, 0.05 + 2 * standard_error(contact) / pressure(phi))
     for (model, what), limits in LIMITS.items():
         for phi, limit in zip(PHIS, limits):
             value, error = endless(found, phi, model, what)
             fit = FITS[what](phi)
-            c.near(f"{WHAT[what]}, phi {phi}, {model}: {value:.4f} +- {error:.4f}; off the fit, %", 100 * (value / fit - 1), 0,
-                   limit + 200 * error / fit)
+            c.near(f"{WHAT[what]}, phi {phi}, {model}: {value:.4f} +- {error:.4f}; off the fit, %",
+                   100 * (value / fit - 1), 0, limit + 200 * error / fit)
 
 
 def check_first(c, rows, found):
@@ -163,7 +171,8 @@ def check_first(c, rows, found):
         for what in ("K", "D", "eta"):
             kept = found[row["phi"], row["model"], what]
             if np.isfinite(row[what]):
-                c.near(f"first set, phi {row['phi']}, {row['model']}: {what}", row[what], kept.mean(), 4 * np.std(kept, ddof=1))
+                c.near(f"first set, phi {row['phi']}, {row['model']}: {what}", row[what], kept.mean(),
+                       4 * np.std(kept, ddof=1))
 
 
 def main():

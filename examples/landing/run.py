@@ -31,8 +31,8 @@ EXACT = np.array([2.7902751, 4.5755874, 5.8482487, 7.9750854, 10.4213978])
 
 def lammps(out, model):
     """Times, heights, speeds"""
-    finished("landing", ["lmp", "-in", str(HERE / "in.landing"), "-log", f"log.{model}", "-var", "model", MODELS[model][2],
-                         "-var", "path", f"{model}.path"], out)
+    finished("landing", ["lmp", "-in", str(HERE / "in.landing"), "-log", f"log.{model}", "-var", "model",
+                         MODELS[model][2], "-var", "path", f"{model}.path"], out)
     steps, rows = zip(*dumped(out / f"{model}.path"))
     rows = np.array(rows)[:, 0]
     return 0.01 * np.array(steps), rows[:, 3], -rows[:, 6], rows
@@ -62,12 +62,15 @@ def draw(runs, exact, path):
     for model, (colour, label, _) in MODELS.items():
         t, z, speed = runs[model][:3]
         shown = z > 1
-        marks = dict(color=colour, lw=0, marker="o", label=label, ms=7 if model == "film" else 3.5, mfc="none" if model == "film" else None)
+        marks = dict(color=colour, lw=0, marker="o", label=label, ms=7 if model == "film" else 3.5,
+                     mfc="none" if model == "film" else None)
         left.semilogy(t[shown], z[shown] - 1, markevery=25, **marks)
         if model != "free":
             right.loglog(z[shown] - 1, speed[shown], markevery=0.04, **marks)
-    left.set(xlabel="time / (6 pi eta a^2 / F)", ylabel="gap / radius", xlim=(0, 15), ylim=(1e-4, 6), title="A sphere falls to the floor")
-    right.set(xlabel="gap / radius", ylabel="speed over that without floor", xlim=(1e-3, 5), ylim=(1e-3, 1.2), title="Its speed")
+    left.set(xlabel="time / (6 pi eta a^2 / F)", ylabel="gap / radius", xlim=(0, 15), ylim=(1e-4, 6),
+             title="A sphere falls to the floor")
+    right.set(xlabel="gap / radius", ylabel="speed over that without floor", xlim=(1e-3, 5), ylim=(1e-3, 1.2),
+              title="Its speed")
     left.legend(loc="lower left")
     save(figure, path)
 
@@ -86,13 +89,16 @@ def main():
 
     table = sphere_at_wall()
     c = Checks()
-    c.below("Brenner's series against the table of another code", np.max([abs(wall_drag(g) / x - 1) for g, x in zip(table["gap"], table["normal"])]), 1e-8)
-    c.below("exact times against the printed ones", np.max(np.abs(np.interp(-np.log(HEIGHTS - 1), -np.log(exact[1]), exact[0]) - EXACT)), 2e-5)
+    c.below("Brenner's series against the table of another code",
+            np.max([abs(wall_drag(g) / x - 1) for g, x in zip(table["gap"], table["normal"])]), 1e-8)
+    c.below("exact times against the printed ones",
+            np.max(np.abs(np.interp(-np.log(HEIGHTS - 1), -np.log(exact[1]), exact[0]) - EXACT)), 2e-5)
     c.below("images alone: times off those of its own mobility by", np.max(np.abs(times["wall"] - OF_IMAGES)), 5e-4)
     c.below("rotation, lubrication: times off the exact ones by", np.max(np.abs(times["film"] - EXACT)), 2e-4)
     c.below("multiblob 12, lubrication: times off the exact ones by", np.max(np.abs(times["shell"] - EXACT)), 6e-4)
     t, z = runs["film"][:2]
-    c.near("rotation, lubrication: gap at the end over the exact one", (z[-1] - 1) / np.exp(np.interp(t[-1], exact[0], np.log(exact[1]))), 1.0, 0.002)
+    c.near("rotation, lubrication: gap at the end over the exact one",
+           (z[-1] - 1) / np.exp(np.interp(t[-1], exact[0], np.log(exact[1]))), 1.0, 0.002)
     rows = runs["shell"][3]
     c.below("multiblob 12, lubrication: it falls straight, and turns by itself: largest speed sideways, spin",
             np.max(np.abs(rows[rows[:, 3] > 1][:, [4, 5, 7, 8, 9]])), 1e-3)
@@ -100,7 +106,8 @@ def main():
         t, z, speed = runs[model][:3]
         fast = np.interp(-1.1, -z, speed) * wall_drag(0.1)
         c.within(f"{model}: speed at a gap of 0.1 over the exact one", fast, low, high)
-    c.within("images alone: it goes through the floor at time", np.interp(-1.0, -runs["wall"][1], runs["wall"][0]), 7.2, 7.35)
+    c.within("images alone: it goes through the floor at time", np.interp(-1.0, -runs["wall"][1], runs["wall"][0]), 7.2,
+             7.35)
     if given.update:
         shutil.copy(out / "landing.png", HERE)
         shutil.copy(out / "log.film", HERE / "log.landing.1")

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Magnetic beads in a field that rotates: beads with a dipole of their own (in.ferro), pairs and a chain that the field magnetises (in.para).
+"""Magnetic beads in a field that rotates: beads with a dipole of their own (in.ferro), pairs and a chain that the field
+magnetises (in.para).
 
     run.py --out DIR     results and the picture go to DIR (default: build/examples/magnetic)
     run.py --quick       without the chain
@@ -21,7 +22,8 @@ DIPOLE, BEADS = 3.0, 12
 
 def write(path, x, mu):
     """Data file of beads at x with dipoles along the axis x"""
-    rows = "".join("{} 1 {:.17g} {:.17g} {:.17g} 2 1 0 {:.17g} 0 0 0\n".format(i + 1, *p, m) for i, (p, m) in enumerate(zip(x, mu)))
+    rows = "".join("{} 1 {:.17g} {:.17g} {:.17g} 2 1 0 {:.17g} 0 0 0\n".format(i + 1, *p, m)
+                   for i, (p, m) in enumerate(zip(x, mu)))
     box = "".join(f"-60 60 {c}lo {c}hi\n" for c in "xyz")
     path.write_text(f"beads\n\n{len(x)} atoms\n1 atom types\n{box}\nMasses\n\n1 1\n\nAtoms\n\n{rows}")
 
@@ -34,7 +36,7 @@ def run(out, script, name, **variables):
     return np.array(steps), np.array(rows)[:, :, 1:]
 
 
-# --- dipoles of their own ---------------------------------------------------------------------------------------------------
+# --- dipoles of their own ---------------------------------------------------------------------------------------------
 
 def rate_law(w, critical):
     """Mean angular velocity of a bead in a field of angular velocity w (Adler 1946)"""
@@ -42,28 +44,32 @@ def rate_law(w, critical):
 
 
 def ferro(out, c):
-    """Beads of unlike dipoles in one field: rates of the field over the critical rate of each, and mean rates of the beads over that"""
+    """Beads of unlike dipoles in one field: rates of the field over the critical rate of each, and mean rates of the
+    beads over that"""
     dt, critical = 0.005, 1 / np.concatenate([np.linspace(0.2, 0.95, 6), np.linspace(1.05, 3, 12)])
     write(out / "ferro.data", [(4.0 * k - 50, 0, 0) for k in range(len(critical))], critical)
     steps, rows = run(out, "ferro", "ferro", dt=dt, steps=20000, every=10)
     t = dt * steps
     lag = t[:, None] - np.unwrap(np.arctan2(rows[:, :, 1], rows[:, :, 0]), axis=0)
     follows = critical > 1
-    c.below("own dipoles: lag of beads that follow, from arcsin(w/w_c), rad", np.abs(lag[-1] - np.arcsin(np.minimum(1 / critical, 1)))[follows].max(), 1e-4)
+    c.below("own dipoles: lag of beads that follow, from arcsin(w/w_c), rad",
+            np.abs(lag[-1] - np.arcsin(np.minimum(1 / critical, 1)))[follows].max(), 1e-4)
     mean = np.ones(len(critical))
     for k in np.nonzero(~follows)[0]:
         turns = np.floor(lag[-1, k] / (2 * np.pi))           # whole turns by which the bead falls behind, and when
         at = [np.interp(2 * np.pi * n, lag[:, k], t) for n in (1, turns)]
         mean[k] = 1 - 2 * np.pi * (turns - 1) / (at[1] - at[0])
     law = rate_law(1.0, critical)
-    c.below("own dipoles: mean rate of beads that slip, from w - sqrt(w^2 - w_c^2)", np.abs(mean - law)[~follows].max(), 2e-4)
+    c.below("own dipoles: mean rate of beads that slip, from w - sqrt(w^2 - w_c^2)", np.abs(mean - law)[~follows].max(),
+            2e-4)
     return 1 / critical, mean / critical
 
 
-# --- dipoles that the field makes -------------------------------------------------------------------------------------------
+# --- dipoles that the field makes -------------------------------------------------------------------------------------
 
 def mobility_of_pair(r):
-    """Velocity of each of two beads that opposite forces 1 across their line move, if they do not turn (Rotne & Prager 1969)"""
+    """Velocity of each of two beads that opposite forces 1 across their line move, if they do not turn (Rotne & Prager
+    1969)"""
     return 1 - 3 / (4 * r) * (1 + 2 / (3 * r**2)) - (3 / (4 * r**2))**2 / (3 / 4 - 3 / (8 * r**3))
 
 
@@ -89,15 +95,16 @@ def angle_of(rows):
 
 
 def chain(out, c):
-    write(out / "chain.data", [(2.1 * (k - (BEADS - 1) / 2), 0.02 * np.sin(k), 0) for k in range(BEADS)], [DIPOLE] * BEADS)
+    write(out / "chain.data", [(2.1 * (k - (BEADS - 1) / 2), 0.02 * np.sin(k), 0) for k in range(BEADS)],
+          [DIPOLE] * BEADS)
     shown = {}
     for w in (0.02, 0.05, 0.3):
         n = int(1.25 * np.pi / w / 0.004) // 100 * 100
         steps, rows = run(out, "para", "chain", rate=w, dipole=DIPOLE, dt=0.004, steps=n, every=n // 100)
         gaps = np.linalg.norm(np.diff(rows[-1], axis=0), axis=1)
         shown[w] = rows[-1], w * 0.004 * n
-        print(f"  chain of {BEADS}, rate {w}: it turned by {angle_of(rows)[-1]:.3f} of {w * 0.004 * n:.3f} rad, largest distance of "
-              f"neighbours {gaps.max():.2f}", flush=True)
+        print(f"  chain of {BEADS}, rate {w}: it turned by {angle_of(rows)[-1]:.3f} of {w * 0.004 * n:.3f} rad, "
+              f"largest distance of neighbours {gaps.max():.2f}", flush=True)
         if w == 0.02:
             c.below("chain, rate 0.02: distance of neighbours", gaps.max(), 2.2)
         if w == 0.3:
@@ -111,7 +118,8 @@ def draw(rates, found, shown, path):
     w = np.linspace(0, 3, 400)
     panels[0].plot(w, rate_law(w, 1.0), "k-", lw=1.2, label="closed form")
     panels[0].plot(*rates, "o", color="C1", label="run")
-    panels[0].set(xlabel="angular velocity of the field, over the critical one", ylabel="mean angular velocity of a bead",
+    panels[0].set(xlabel="angular velocity of the field, over the critical one",
+                  ylabel="mean angular velocity of a bead",
                   title="beads with a dipole of their own")
     panels[0].legend(frameon=False)
     for panel, (w, (x, field)) in zip(panels[1:], shown.items()):

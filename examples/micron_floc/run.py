@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""2000 spheres of 2 micrometres fall through water towards a floor: a second of theirs without inertia, and how long it would take with it.
+"""2000 spheres of 2 micrometres fall through water towards a floor: a second of theirs without inertia, and how long it
+would take with it.
 
     run.py --out DIR    results and the picture go to DIR (default: build/examples/micron_floc)
     run.py --update     also refreshes the picture in this folder
@@ -28,12 +29,14 @@ def lammps(out, tag, **variables):
     text = log.read_text()
     loops = re.findall(r"^Loop time of (\S+) on 1 procs for (\d+) steps.*?^(\S+)% CPU use", text, re.M | re.S)
     seconds = sum(float(t) * float(share) / 100 for t, _, share in loops)       # of the processor
-    rows = [[float(w) for w in line.split()] for line in text.splitlines() if re.match(r" +\d+( +[-+.\de]+){6,10} *$", line)]
+    rows = [[float(w) for w in line.split()] for line in text.splitlines()
+            if re.match(r" +\d+( +[-+.\de]+){6,10} *$", line)]
     return np.array([row for row in rows if len(row) == len(rows[0])]), seconds, sum(int(n) for _, n, _ in loops)
 
 
 def point_forces(x, floor=True):
-    """Mean settling speed of points of equal weight: their own, Oseen's tensor of the others, and Blake's images of all in the floor"""
+    """Mean settling speed of points of equal weight: their own, Oseen's tensor of the others, and Blake's images of all
+    in the floor"""
     total = 0.0
     for k in range(len(x)):
         r = np.delete(x, k, axis=0) - x[k]
@@ -77,18 +80,23 @@ def main():
     landed = np.interp(-3.0, rows[:, 4] - 1, rows[:, 1])      # the lowest centre at 3 um
     sample = [whole[k] for k in np.unique(np.linspace(0, len(whole) - 1, 10).astype(int))]
     speeds = [(t, point_forces(x[:, :3]), point_forces(x[:, :3], floor=False)) for t, x in sample]
-    draw(rows, [whole[np.argmin([abs(t - s) for t, _ in whole])] for s in (0.0, 0.2, 0.4, landed, end)], speeds, out / "micron_floc.png")
+    draw(rows, [whole[np.argmin([abs(t - s) for t, _ in whole])] for s in (0.0, 0.2, 0.4, landed, end)], speeds,
+         out / "micron_floc.png")
 
     falling = [(t, v) for t, v, _ in speeds if 0 < t < landed]
     ratio = [np.interp(t, rows[1:, 1], rows[1:, 2]) / v for t, v in falling]
     with_inertia = step_inertia * end * 1e6 / 0.1
-    print(f"  {len(whole[0][1])} spheres; {steps} steps, {computing:.0f} s of the processor for {end:.2f} s; it comes to the floor at {landed:.2f} s")
-    print(f"  with inertia {1e3 * step_inertia:.0f} ms per step of 0.1 us: {with_inertia / 86400:.1f} days; ratio {with_inertia / computing:.0f}")
+    print(f"  {len(whole[0][1])} spheres; {steps} steps, {computing:.0f} s of the processor for {end:.2f} s; "
+          f"it comes to the floor at {landed:.2f} s")
+    print(f"  with inertia {1e3 * step_inertia:.0f} ms per step of 0.1 us: {with_inertia / 86400:.1f} days; "
+          f"ratio {with_inertia / computing:.0f}")
     for t, v, free in speeds:
-        print(f"  {t:.2f} s: speed {np.interp(t, rows[1:, 1], rows[1:, 2]):.1f} um/s, point forces {v:.1f}, without floor {free:.1f}; lone {LONE:.3f}")
+        print(f"  {t:.2f} s: speed {np.interp(t, rows[1:, 1], rows[1:, 2]):.1f} um/s, point forces {v:.1f}, "
+              f"without floor {free:.1f}; lone {LONE:.3f}")
     print(f"  picture: {out / 'micron_floc.png'}\n")
     c = Checks()
-    c.within("speed over that of point forces and their images in the same places, as it falls: least", min(ratio), 0.96, 1.02)
+    c.within("speed over that of point forces and their images in the same places, as it falls: least", min(ratio),
+             0.96, 1.02)
     c.within("the same, most", max(ratio), 0.98, 1.03)
     c.within("speed at the start over that without floor", speeds[0][1] / speeds[0][2], 0.7, 0.8)
     c.below("largest error figure of a step, in radii", rows[1:, 5].max(), 1e-3)

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Microrollers: spheres of a micron that settle above a floor, kept spinning by a field, with Brownian motion, hydrodynamic
-interactions above the floor and films (in.microrollers). A window moves along with them: who leaves it in front comes in again behind.
+"""Microrollers: spheres of a micron that settle above a floor, kept spinning by a field, with Brownian motion,
+hydrodynamic interactions above the floor and films (in.microrollers). A window moves along with them: who leaves it in
+front comes in again behind.
 
     run.py --out DIR       results and the picture go to DIR (default: build/examples/microrollers)
     run.py --full          the published size, 2048 spheres for 3 s, where otherwise 256 move for 2 s
@@ -24,7 +25,8 @@ SINCE, UNTIL = 1.0, 3.0             # s: when layers have formed, and before the
 
 
 def scatter(path, n):
-    """On a lattice in a square window of side L at the area fraction, at random heights as of lone spheres at rest. Returns L."""
+    """On a lattice in a square window of side L at the area fraction, at random heights as of lone spheres at rest.
+    Returns L."""
     rng, L = np.random.default_rng(2), A * np.sqrt(n * np.pi / FRACTION)
     rows = round(np.sqrt(n))
     columns = -(-n // rows)
@@ -33,8 +35,10 @@ def scatter(path, n):
     x += rng.uniform(-0.25, 0.25, x.shape)
     x[:, 2] = A + 0.15 + rng.exponential(KT / WEIGHT, n)
     with open(path, "w") as data:
-        data.write(f"spheres\n\n{n} atoms\n1 atom types\n-100 {L + 900} xlo xhi\n-100 {L + 100} ylo yhi\n0 100 zlo zhi\n\nAtoms\n\n")
-        data.write("".join("{} 1 {:.17g} 1 {:.10g} {:.10g} {:.10g}\n".format(i + 1, 2 * A, *p) for i, p in enumerate(x)))
+        data.write(f"spheres\n\n{n} atoms\n1 atom types\n-100 {L + 900} xlo xhi\n-100 {L + 100} ylo yhi\n"
+                   "0 100 zlo zhi\n\nAtoms\n\n")
+        data.write("".join("{} 1 {:.17g} 1 {:.10g} {:.10g} {:.10g}\n".format(i + 1, 2 * A, *p)
+                           for i, p in enumerate(x)))
     return L
 
 
@@ -46,7 +50,8 @@ def tabulate(path):
     energy = force * LENGTH - force * np.minimum(r - 2 * A - DEEPEST, 0)
     with open(path, "w") as table:
         table.write(f"repulsion\nN {len(r)}\n\n")
-        table.write("".join(f"{k + 1} {at:.8g} {e:.8g} {f:.8g}\n" for k, (at, e, f) in enumerate(zip(r, energy, force))))
+        table.write("".join(f"{k + 1} {at:.8g} {e:.8g} {f:.8g}\n"
+                            for k, (at, e, f) in enumerate(zip(r, energy, force))))
 
 
 def put_back(x, centre, L, rng):
@@ -80,7 +85,8 @@ def roll(out, name, n, seconds, spins=True):
             lmp.command(f"run {PIECE}")
             order = np.argsort(lmp.numpy.extract_atom("id")[:n].ravel())
             after = np.array(lmp.numpy.extract_atom("x"))[:n][order]
-            frames.append((piece * PIECE * DT, centre.copy(), before, after, lmp.extract_fix("move", 0, 1, nrow=11) / n))
+            frames.append((piece * PIECE * DT, centre.copy(), before, after, lmp.extract_fix("move", 0, 1, nrow=11) /
+                           n))
             centre[0] += (after - before)[:, 0].mean()
             if spins:
                 x = after.copy()
@@ -102,8 +108,8 @@ def samples(frames, L):
 
 
 def peaks(v, width):
-    """The two highest maxima of the histogram smoothed over width, the lower speed first, and the valley over the lower of both; None:
-    there is one maximum"""
+    """The two highest maxima of the histogram smoothed over width, the lower speed first, and the valley over the lower
+    of both; None: there is one maximum"""
     at = np.linspace(v.min(), v.max(), 400)
     p = np.exp(-0.5 * ((at[:, None] - v) / width)**2).sum(axis=1)
     tops = [k for k in range(1, 399) if p[k - 1] < p[k] > p[k + 1]]
@@ -131,12 +137,14 @@ def draw(frames, L, v, z, path):
         circles = [plt.Circle(p[:2] - centre, A) for p in x[order]]
         panel.add_collection(plt.matplotlib.collections.PatchCollection(
             circles, facecolors=plt.cm.viridis(np.clip((x[order, 2] - A) / (2.5 * A), 0, 1)), lw=0))
-        panel.set(aspect="equal", title=f"{t:.1f} s", xticks=[], yticks=[], xlim=(-0.55 * L, 0.55 * L), ylim=(-0.55 * L, 0.55 * L))
+        panel.set(aspect="equal", title=f"{t:.1f} s", xticks=[], yticks=[], xlim=(-0.55 * L, 0.55 * L),
+                  ylim=(-0.55 * L, 0.55 * L))
         for side in ("left", "bottom"):
             panel.spines[side].set_visible(False)
     speed, height = figure.add_subplot(grid[1, :6]), figure.add_subplot(grid[1, 6:])
     bins, upper = np.arange(np.floor(v.min()), v.max() + 2, 2.0), z > 2 * A
-    speed.hist([v[~upper], v[upper]], bins=bins, stacked=True, color=["C0", "C1"], label=["centre below 2 radii", "above"])
+    speed.hist([v[~upper], v[upper]], bins=bins, stacked=True, color=["C0", "C1"],
+               label=["centre below 2 radii", "above"])
     speed.set(xlabel="speed along the floor, um/s", ylabel="how many")
     speed.legend(frameon=False)
     height.plot(v, z / A, ".", ms=2, alpha=0.3, color="C0", lw=0)
@@ -159,8 +167,9 @@ def main():
         shutil.copy(given.out / "microrollers.png", HERE)
     low, high = z < 1.5 * A, z > 2.0 * A
     slip = np.mean([f[4] for f in frames if SINCE <= f[0] < UNTIL])
-    print(f"{n} spheres for {seconds} s in {took:.0f} s of processor time: {v.mean():.2f} um/s in the mean; {v[low].mean():.2f} of the "
-          f"{low.mean():.0%} below 1.5 radii, {v[high].mean():.2f} of the {high.mean():.0%} above 2; {slip:.0%} slip")
+    print(f"{n} spheres for {seconds} s in {took:.0f} s of processor time: {v.mean():.2f} um/s in the mean; "
+          f"{v[low].mean():.2f} of the {low.mean():.0%} below 1.5 radii, {v[high].mean():.2f} of the {high.mean():.0%} "
+          f"above 2; {slip:.0%} slip")
     found = peaks(v, 2.0)
     if found:
         print("peaks at {:.1f} and {:.1f} um/s, valley {:.2f} of the lower one".format(*found))

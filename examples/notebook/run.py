@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Runs the cells of two_lammps.ipynb one after the other, without jupyter, checks their figures and saves their picture.
+"""Runs the cells of two_lammps.ipynb one after the other, without jupyter, checks their figures and saves their
+picture.
 
     run.py [--out FOLDER] [--update]     --update: also refreshes the picture in this folder
 """

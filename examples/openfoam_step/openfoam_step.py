@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Laminar flow over a backward-facing step by OpenFOAM, and rigid chains and spheres in it: ./run.sh installs what this needs and
-calls it. Writes to build/examples/openfoam_step; --update also refreshes the picture here."""
+"""Laminar flow over a backward-facing step by OpenFOAM, and rigid chains and spheres in it: ./run.sh installs what this
+needs and calls it. Writes to build/examples/openfoam_step; --update also refreshes the picture here."""
 import os
 import pathlib
 import shutil
@@ -24,7 +24,7 @@ COUNT = 600                # chains, and as many spheres
 STEPS = 10000
 
 
-# --- the flow --------------------------------------------------------------------------------------------------------------
+# --- the flow ---------------------------------------------------------------------------------------------------------
 
 def run(words, folder, log):
     with open(log, "a") as out:
@@ -42,7 +42,8 @@ def solve(out, re, cells):
                          ("system/blockMeshDict", {"INLETX": 2 * cells, "CHANNELX": 8 * cells, "CELLS": cells})):
         text = (case / name).read_text()
         for word, value in values.items():
-            text = text.replace(f" {word} ", f" {value} ").replace(f" {word};", f" {value};").replace(f"({word} ", f"({value} ")
+            text = text.replace(f" {word} ", f" {value} ").replace(f" {word};",
+                                                                   f" {value};").replace(f"({word} ", f"({value} ")
         (case / name).write_text(text)
     for words in (["blockMesh"], ["simpleFoam"], ["foamToVTK", "-latestTime"]):
         run(words, case, case / "log")
@@ -54,17 +55,18 @@ def solve(out, re, cells):
 def reattachment(vtk, cells):
     """Where the wall shear changes sign: u at the centres of the first cells above the floor."""
     x = np.linspace(0.2, 25.0, 5000)
-    u, _ = flow_grid.sample(flow_grid.read_vtk(str(vtk)), [x, np.array([-1.0 + 0.5 / cells]), np.array([0.05])], "U", str(vtk))
+    u, _ = flow_grid.sample(flow_grid.read_vtk(str(vtk)), [x, np.array([-1.0 + 0.5 / cells]), np.array([0.05])], "U",
+                            str(vtk))
     u = u[0, 0, :, 0]
     k = np.nonzero((u[:-1] < 0.0) & (u[1:] >= 0.0))[0][0]
     return x[k] - u[k] * (x[k + 1] - x[k]) / (u[k + 1] - u[k])
 
 
-# --- the particles ---------------------------------------------------------------------------------------------------------
+# --- the particles ----------------------------------------------------------------------------------------------------
 
 def weights():
-    """Force on a sphere of a chain and on a single one, so that both settle at one mean speed, and the radius of the single ones:
-    that of a chain's volume."""
+    """Force on a sphere of a chain and on a single one, so that both settle at one mean speed, and the radius of the
+    single ones: that of a chain's volume."""
     chain = stokesdyn.Clump([(0, 0, 2 * A * k) for k in range(LENGTH)], radius=A, shell=42, viscosity=ETA)
     single = A * LENGTH**(1 / 3)
     return 6 * np.pi * ETA * chain.hydrodynamic_radius * SETTLING / LENGTH, 6 * np.pi * ETA * single * SETTLING, single
@@ -86,7 +88,8 @@ def write_spheres(path, single):
     for x in centres:
         lines.append(f"{len(lines) + 1} 2 {x[0]:.9g} {x[1]:.9g} {x[2]:.9g} {2 * single:.9g} "
                      f"{9 * ETA * TAU / (2 * single**2):.9g} 0")
-    path.write_text(f"chains and spheres\n\n{len(lines)} atoms\n2 atom types\n-4 80 xlo xhi\n-1.2 1.2 ylo yhi\n0 1 zlo zhi\n\n"
+    path.write_text(f"chains and spheres\n\n{len(lines)} atoms\n2 atom types\n-4 80 xlo xhi\n-1.2 1.2 ylo yhi\n"
+                    "0 1 zlo zhi\n\n"
                     "Atoms\n\n" + "\n".join(lines) + "\n")
 
 
@@ -113,11 +116,13 @@ def look_up(axes, field, x, y):
     i = np.clip(np.searchsorted(axes[0], x) - 1, 0, len(axes[0]) - 2)
     j = np.clip(np.searchsorted(axes[1], y) - 1, 0, len(axes[1]) - 2)
     p, q = (x - axes[0][i]) / (axes[0][i + 1] - axes[0][i]), (y - axes[1][j]) / (axes[1][j + 1] - axes[1][j])
-    return (1 - q) * ((1 - p) * field[j, i] + p * field[j, i + 1]) + q * ((1 - p) * field[j + 1, i] + p * field[j + 1, i + 1])
+    return ((1 - q) * ((1 - p) * field[j, i] + p * field[j, i + 1]) + q *
+            ((1 - p) * field[j + 1, i] + p * field[j + 1, i + 1]))
 
 
 class Fates:
-    """Of each body: its track [frames, 2], where it first touches the floor (nan: it does not), its time in the bubble before."""
+    """Of each body: its track [frames, 2], where it first touches the floor (nan: it does not), its time in the bubble
+    before."""
 
     def __init__(self, rows, per_body, axes, psi, dt, length):
         frames = rows.shape[0]
@@ -141,14 +146,16 @@ def draw(path, axes, u, psi, length, chains, spheres):
     X, Y = np.meshgrid(x, y)
     field = [look_up(axes, u[..., d], X, Y) for d in (0, 1)]
     flow.streamplot(x, y, *field, density=(2.4, 0.9), color="0.75", linewidth=0.6, arrowsize=0.6)
-    flow.contour(axes[0], axes[1], np.where((axes[0] > 0)[None, :], psi, np.nan), levels=[0.0], colors="k", linewidths=1)
+    flow.contour(axes[0], axes[1], np.where((axes[0] > 0)[None, :], psi, np.nan), levels=[0.0], colors="k",
+                 linewidths=1)
     for body, colour, name in ((chains, "tab:red", "chains"), (spheres, "tab:blue", "spheres")):
         some = list(np.nonzero(body.caught)[0][:6]) + list(np.nonzero(~body.caught)[0][:6])
         for n, k in enumerate(some):
             flow.plot(*body.track[:, k].T, color=colour, linewidth=0.8, label=name if n == 0 else None)
     flow.fill_between([-1, 0], -1, 0, color="0.4")
     flow.plot([length], [-1], "k^", clip_on=False)
-    flow.set(xlim=(-1, 10), ylim=(-1, 1), ylabel="y / step", title=f"Re = {RE}: streamlines, the bubble's edge, some paths")
+    flow.set(xlim=(-1, 10), ylim=(-1, 1), ylabel="y / step",
+             title=f"Re = {RE}: streamlines, the bubble's edge, some paths")
     flow.legend(loc="upper right")
     edges = np.linspace(0, 25, 51)
     for body, colour, name in ((chains, "tab:red", "chains"), (spheres, "tab:blue", "spheres")):
@@ -170,7 +177,8 @@ def main():
         for cells in map(int, given.meshes.split()):
             vtk = solve(out, re, cells)
             lengths[re, cells] = reattachment(vtk, cells)
-            print(f"Re {re}, {cells} cells to the step: reattachment at {lengths[re, cells]:.4f}, published {REATTACHMENT[re]}", flush=True)
+            print(f"Re {re}, {cells} cells to the step: reattachment at {lengths[re, cells]:.4f}, "
+                  f"published {REATTACHMENT[re]}", flush=True)
             if re == RE:
                 flow_vtk = vtk
         checks.near(f"reattachment at Re {re}", lengths[re, cells], REATTACHMENT[re], 0.03 * REATTACHMENT[re])
@@ -189,9 +197,10 @@ def main():
 
     weight, weight_sphere, single = weights()
     write_spheres(out / "spheres.data", single)
-    run(["lmp", "-in", str(HERE / "in.openfoam_step"), "-log", "log.openfoam_step", "-screen", "none", "-nocite", "-var", "data",
-         "spheres.data", "-var", "flow", "flow.grid", "-var", "weight", repr(float(weight)), "-var", "weight_sphere", repr(float(weight_sphere)),
-         "-var", "tau", str(TAU), "-var", "steps", str(STEPS)], out, out / "lmp.out")
+    run(["lmp", "-in", str(HERE / "in.openfoam_step"), "-log", "log.openfoam_step", "-screen", "none", "-nocite",
+         "-var", "data", "spheres.data", "-var", "flow", "flow.grid", "-var", "weight", repr(float(weight)), "-var",
+         "weight_sphere", repr(float(weight_sphere)), "-var", "tau", str(TAU), "-var", "steps", str(STEPS)], out,
+        out / "lmp.out")
     tracks = read_tracks(out / "tracks.dump")
     dt = 50 * TAU / 5
     chains = Fates(tracks[:, :COUNT * LENGTH], LENGTH, axes, psi, dt, length)
@@ -199,8 +208,9 @@ def main():
 
     for name, body in (("chains", chains), ("spheres", spheres)):
         landed = body.landed[np.isfinite(body.landed)]
-        print(f"{name}: {100 * body.share:.1f} +- {100 * body.share_error:.1f} % caught in the recirculation, residence there "
-              f"{body.residence[body.caught].mean():.2f}; on the floor {len(landed)}, median at x = {np.median(landed):.2f}")
+        print(f"{name}: {100 * body.share:.1f} +- {100 * body.share_error:.1f} % caught in the recirculation, "
+              f"residence there {body.residence[body.caught].mean():.2f}; on the floor {len(landed)}, "
+              f"median at x = {np.median(landed):.2f}")
         checks.below(f"{name}: deepest centre below the floor, radii", (-1 - body.track[..., 1].min()) / A, 0.0)
         checks.within(f"{name}: share caught", body.share, 0.01, 0.6)
     checks.holds("chains lie along the flow and settle more slowly: fewer are caught", chains.share < spheres.share)

@@ -4,10 +4,11 @@
     run.py --out DIR    results and the picture go to DIR (default: build/examples/polymer)
     run.py --update     also refreshes the picture in this folder
 
-Chains start in equilibrium, which is Gaussian whatever the fluid does, so that no time is lost on coming there. What their centres
-do in a step is compared with
+Chains start in equilibrium, which is Gaussian whatever the fluid does, so that no time is lost on coming there. What
+their centres do in a step is compared with
   Rouse      kT/(6 pi eta a N), beads that do not feel each other
-  Kirkwood   kT tr M/3 of the mean over all pairs of beads, averaged over the chains: by this script from the same mobility
+  Kirkwood   kT tr M/3 of the mean over all pairs of beads, averaged over the chains: by this script from the same
+             mobility
   Zimm       0.196 kT/(eta b sqrt N), the limit of long chains (Doi & Edwards, The Theory of Polymer Dynamics, 4.2)
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
@@ -41,8 +42,10 @@ def write(path, x):
     k = np.arange(count)
     x = x + cell * (np.column_stack([k % side, k // side % side, k // side**2]) + 0.5)[:, None]
     with open(path, "w") as out:
-        out.write(f"chains\n\n{count * n} atoms\n{count * (n - 1)} bonds\n1 atom types\n1 bond types\n2 extra bond per atom\n"
-                  "6 extra special per atom\n" + "".join(f"{-cell} {cell * (side + 1)} {d}lo {d}hi\n" for d in "xyz") + "\nAtoms\n\n")
+        out.write(f"chains\n\n{count * n} atoms\n{count * (n - 1)} bonds\n1 atom types\n1 bond types\n"
+                  "2 extra bond per atom\n"
+                  "6 extra special per atom\n" + "".join(f"{-cell} {cell * (side + 1)} {d}lo {d}hi\n" for d in "xyz") +
+                  "\nAtoms\n\n")
         for i, (p, q, r) in enumerate(x.reshape(-1, 3)):
             out.write(f"{i + 1} 1 {p:.10f} {q:.10f} {r:.10f} 2 1 {i // n + 1}\n")
         out.write("\nBonds\n\n")
@@ -90,7 +93,8 @@ def draw(rows, shown, path):
     plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
     figure, (left, axis) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained")
     left.plot(shown[:, 0], shown[:, 2], "-", color="0.7", lw=1)
-    left.scatter(shown[:, 0], shown[:, 2], s=26, c=np.arange(len(shown)), cmap="viridis", zorder=2, edgecolors="black", linewidths=0.3)
+    left.scatter(shown[:, 0], shown[:, 2], s=26, c=np.arange(len(shown)), cmap="viridis", zorder=2, edgecolors="black",
+                 linewidths=0.3)
     left.set_aspect("equal")
     left.axis("off")
     left.set_title(f"a chain of {len(shown)} beads", fontsize=10)
@@ -119,8 +123,8 @@ def main():
         rouse, _ = diffuse(given.out, n, "no", x)
         rows.append(dict(n=n, D=D, rouse=rouse, deviation=deviation, kirkwood=kirkwood(chains(n, 4 * BEADS // n, rng))))
         r = rows[-1]
-        print(f"  {n:4d} beads: D {D:.6f} +- {D * deviation:.6f}, Kirkwood {r['kirkwood']:.6f}, Zimm {ZIMM / B / np.sqrt(n):.6f}; "
-              f"alone {rouse:.6f}, Rouse {1 / (6 * np.pi * n):.6f}", flush=True)
+        print(f"  {n:4d} beads: D {D:.6f} +- {D * deviation:.6f}, Kirkwood {r['kirkwood']:.6f}, "
+              f"Zimm {ZIMM / B / np.sqrt(n):.6f}; alone {rouse:.6f}, Rouse {1 / (6 * np.pi * n):.6f}", flush=True)
     draw(rows, shown, given.out / "polymer.png")
     if given.update:
         shutil.copy(given.out / "polymer.png", HERE)

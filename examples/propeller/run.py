@@ -5,8 +5,8 @@
     run.py --update     also refreshes the picture and the logs in this folder
 
 Two values to compare with, at the orientation that the clump has at each time:
-  own     velocity and angular velocity that follow from the clump's own 6x6 resistance, which the plugin gives in six rigid
-          motions (../sedimentation/in.six_motions)
+  own     velocity and angular velocity that follow from the clump's own 6x6 resistance, which the plugin gives in six
+          rigid motions (../sedimentation/in.six_motions)
   exact   the same from exact Stokes flow, ../sedimentation/data/clusters_exact.csv
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
 """
@@ -125,7 +125,8 @@ def run(out, shell, ranks=1):
 
 
 def balls(axis, x, colours):
-    """Spheres of unit radius seen from the side (along y), those in front painted last, each with a light from above."""
+    """Spheres of unit radius seen from the side (along y), those in front painted last, each with a light from
+    above."""
     for k in np.argsort(-x[:, 1]):
         centre = np.array([x[k, 0], x[k, 2]])
         for s in np.linspace(0, 1, 24):

@@ -1,9 +1,9 @@
 # %% [markdown]
 # # A clump from Python
 #
-# Resistance and mobility of an L of four spheres as numpy arrays, how it settles without inertia, and the same through LAMMPS.
-# Units: radius of a sphere 1, drag of a lone sphere 1 (viscosity 1/(6 pi)), weight of a sphere, less buoyancy, 1. So a lone
-# sphere settles with velocity 1. After `. build/env.sh`.
+# Resistance and mobility of an L of four spheres as numpy arrays, how it settles without inertia, and the same through
+# LAMMPS. Units: radius of a sphere 1, drag of a lone sphere 1 (viscosity 1/(6 pi)), weight of a sphere, less buoyancy,
+# 1. So a lone sphere settles with velocity 1. After `. build/env.sh`.
 
 # %%
 import numpy as np
@@ -17,8 +17,9 @@ with np.printoptions(precision=4, suppress=True):
     print(clump.resistance)
 
 # %% [markdown]
-# Three directions in which it settles without turning away from them would be the eigenvectors of the mobility's first block,
-# if the weight acted at the centre of hydrodynamic stress. It acts at the centre of mass, so the L turns as well.
+# Three directions in which it settles without turning away from them would be the eigenvectors of the mobility's first
+# block, if the weight acted at the centre of hydrodynamic stress. It acts at the centre of mass, so the L turns as
+# well.
 
 # %%
 mass_centre = L.mean(axis=0)

@@ -28,7 +28,8 @@ def notebook():
         cells.append({"cell_type": "markdown", "metadata": {}, "source": lines} if "markdown" in head else
                      {"cell_type": "code", "metadata": {}, "source": lines, "outputs": [], "execution_count": None})
     kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
-    return json.dumps({"cells": cells, "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 4}, indent=1) + "\n"
+    return json.dumps({"cells": cells, "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 4},
+                      indent=1) + "\n"
 
 
 def main():
@@ -50,7 +51,8 @@ def main():
     clump, path = cells["clump"], cells["path"]
     checks = Checks()
     checks.near("resistance is symmetric", np.abs(clump.resistance - clump.resistance.T).max(), 0.0, 1e-12)
-    checks.near("mobility is the inverse of resistance", np.abs(clump.mobility @ clump.resistance - np.eye(6)).max(), 0.0, 1e-12)
+    checks.near("mobility is the inverse of resistance", np.abs(clump.mobility @ clump.resistance - np.eye(6)).max(),
+                0.0, 1e-12)
     coarse, _ = cells["settle"](cells["START"], cells["TIME"], 100)
     middle, _ = cells["settle"](cells["START"], cells["TIME"], 200)
     order = np.log2(np.abs(coarse[-1] - middle[-1]).max() / np.abs(middle[-1] - path[-1]).max())

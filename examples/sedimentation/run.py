@@ -7,11 +7,11 @@
 Every velocity is compared with two values:
   model   the Rotne-Prager system of the spheres as they stand at the end of the run, solved here densely by numpy: what
           pair_style stokes_dynamics must give
-  exact   Stokes flow around the clump (no slip on its surface), data/clusters_exact.csv and data/chains_exact.csv: what the
-          model approximates
-The ladder then repeats the twelve clumps with better models (torques, shells of 12, 42 and 162 points per sphere) and compares
-with exact, and with what the clump's own 6x6 resistance says.
-Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
+  exact   Stokes flow around the clump (no slip on its surface), data/clusters_exact.csv and data/chains_exact.csv: what
+          the model approximates
+The ladder then repeats the twelve clumps with better models (torques, shells of 12, 42 and 162 points per sphere) and
+compares with exact, and with what the clump's own 6x6 resistance says. Ends with a line ok or MISSED for each figure of
+the README, and exits with 1 when one is missed.
 """
 import concurrent.futures
 import os
@@ -40,8 +40,8 @@ LADDER_ERRORS = {"1": (9.26, 6.07), "torque": (3.05, 2.43), "12": (0.10, 0.04), 
 
 SOLVED = "algorithm 2 relative_tolerance 1e-10"
 # Steps of the ladder: what it is called, and the words of the pair style
-LADDER = {"1": SOLVED, "torque": "rotation yes " + SOLVED, "12": "rigid_clumps yes shell 12", "42": "rigid_clumps yes shell 42",
-          "162": "rigid_clumps yes shell 162"}
+LADDER = {"1": SOLVED, "torque": "rotation yes " + SOLVED, "12": "rigid_clumps yes shell 12",
+          "42": "rigid_clumps yes shell 42", "162": "rigid_clumps yes shell 162"}
 # How its time is measured: the drag alone of each sphere, then both ways to come to the same answer
 TIMED = {"Stokes drag of each sphere": "cut_off_distance 9e-5",
          "1, solved every step": "algorithm 2 relative_tolerance 1e-4", "1, rigid_clumps": "rigid_clumps yes",
@@ -57,7 +57,8 @@ for row in read_table(HERE / "data" / "cluster_geometry.csv"):
 GEOMETRY = {name: np.array(x) for name, x in GEOMETRY.items()}
 CLUMP_EXACT = {row["name"]: np.array([[float(row[f"R{i}{j}"]) for j in range(1, 7)] for i in range(1, 7)]) / (6 * np.pi)
                for row in read_table(HERE / "data" / "clusters_exact.csv")}
-CHAIN_EXACT = {int(row["N"]): (float(row["Fpar"]), float(row["Fperp"])) for row in read_table(HERE / "data" / "chains_exact.csv")}
+CHAIN_EXACT = {int(row["N"]): (float(row["Fpar"]), float(row["Fperp"]))
+               for row in read_table(HERE / "data" / "chains_exact.csv")}
 DRIFT_MODEL = {(int(row["N"]), float(row["angle_deg"])): float(row["drift_deg_model"])
                for row in read_table(HERE / "data" / "drift.csv")}
 
@@ -86,8 +87,8 @@ def model_resistance(x):
 
 
 def settle(R, weight):
-    """U, W of a body of resistance R under a force and no torque. A straight chain of torque-free spheres has no resistance
-    to spin about its axis, hence the pseudo-inverse: no spin there."""
+    """U, W of a body of resistance R under a force and no torque. A straight chain of torque-free spheres has no
+    resistance to spin about its axis, hence the pseudo-inverse: no spin there."""
     V = np.linalg.pinv(R, rcond=1e-10) @ np.concatenate([weight, np.zeros(3)])
     return V[:3], V[3:]
 
@@ -131,7 +132,8 @@ class Case:
 
     def __init__(self, clump, angle, n=None, ranks=1, radius=A, steps=400, picture=False, level="1"):
         self.level = level
-        self.clump, self.angle, self.ranks, self.radius, self.steps, self.picture = clump, angle, ranks, radius, steps, picture
+        self.clump, self.angle, self.ranks = clump, angle, ranks
+        self.radius, self.steps, self.picture = radius, steps, picture
         self.shape = GEOMETRY[clump] if clump != "chain" else np.array([[0, 0, 2.0 * i - n + 1] for i in range(n)])
         self.n = len(self.shape)
         self.label = f"chain of {n}" if clump == "chain" else clump
@@ -184,7 +186,8 @@ def cases():
     list_ += [Case("chain", angle, n) for n in (2, 3, 5, 10, 20, 50) for angle in (0, 45, 90)]
     list_ += [Case("doublet", angle) for angle in (15, 30, steepest(*doublet), 60, 75)]
     list_ += [Case("chain", angle, 10) for angle in (15, 30, steepest(*ten), 60, 75)]
-    # Beads of 1 mm fall several radii within some thousand steps; the velocity cannot tell whether the axis turns slowly.
+    # Beads of 1 mm fall several radii within some thousand steps; the velocity cannot tell whether the axis turns
+    # slowly.
     list_ += [Case("doublet", 45, radius=10 * A, steps=20000), Case("chain", 45, 10, radius=10 * A, steps=8000)]
     list_ += [Case("helix4_chiral", 0, ranks=2), Case("chain", 45, 50, ranks=2)]
     return list_
@@ -209,7 +212,8 @@ def own_resistance(out, name):
 
 
 def own_errors(case, R):
-    """Velocity (relative) and angular velocity (in U0/a) of a run against what follows from the resistance R of its clump."""
+    """Velocity (relative) and angular velocity (in U0/a) of a run against what follows from the resistance R of its
+    clump."""
     U, W = settle(R, case.turn.T @ np.array([0.0, 0.0, -case.n]))
     return np.linalg.norm(case.turn.T @ case.U - U) / np.linalg.norm(U), np.linalg.norm(case.turn.T @ case.W - W)
 
@@ -218,8 +222,8 @@ def measure(out, words):
     """Processor time of the pair style per sphere and step, ns; time of the solve of the shape, s."""
     log = out / "timing.log"
     execute(["stdbuf", "-oL", "lmp", "-in", "in.sedimentation", "-log", str(log), "-var", "clump", TIMED_CLUMP,
-             "-var", "angle", "45", "-var", "copies", str(COPIES), "-var", "steps", str(TIMED_STEPS), "-var", "model", words,
-             "-var", "clumps_only", "no" if "cut_off_distance" in words else "yes"])
+             "-var", "angle", "45", "-var", "copies", str(COPIES), "-var", "steps", str(TIMED_STEPS), "-var", "model",
+             words, "-var", "clumps_only", "no" if "cut_off_distance" in words else "yes"])
     text = log.read_text()
     section = next(line for line in text.splitlines() if line.startswith("Pair ")).split("|")
     seconds = float(section[2]) * float(section[5]) / 100
@@ -249,28 +253,31 @@ def row(c):
 
 def table(rows):
     width = [max(len(r[k]) for r in rows) for k in range(len(rows[0]))]
-    text = ["| " + " | ".join([r[0].ljust(width[0])] + [c.rjust(w) for c, w in zip(r[1:], width[1:])]) + " |" for r in rows]
+    text = ["| " + " | ".join([r[0].ljust(width[0])] + [c.rjust(w) for c, w in zip(r[1:], width[1:])]) + " |"
+            for r in rows]
     text.insert(1, "|" + "|".join("-" * (w + 2) if k == 0 else "-" * (w + 1) + ":" for k, w in enumerate(width)) + "|")
     return "\n".join(text) + "\n"
 
 
 def errors_of(level, done, ladder):
-    runs = [c for c in done + ladder if (c.level, c.angle, c.ranks, c.radius) == (level, 45, 1, A) and c.clump != "chain"]
+    runs = [c for c in done + ladder if (c.level, c.angle, c.ranks, c.radius) == (level, 45, 1, A) and
+            c.clump != "chain"]
     return [abs(c.drag_error) for c in runs], [c.exact_error for c in runs]
 
 
 def ladder_table(times, done, ladder):
     """Rows of text"""
     plain = next(iter(times.values()))[0]
-    rows = [["model of a sphere", "drag: worst %", "mean %", "velocity: worst %", "ns per sphere and step", "times Stokes drag",
-             "solved once in"]]
+    rows = [["model of a sphere", "drag: worst %", "mean %", "velocity: worst %", "ns per sphere and step",
+             "times Stokes drag", "solved once in"]]
     for name, (time_, solved) in times.items():
         level = name.split(",")[0].replace("shell ", "")
         if level in LADDER:
             drag, velocity = errors_of(level, done, ladder)
             cells = [f"{max(drag):.2f}", f"{np.mean(drag):.2f}", f"{max(velocity):.2f}"]
         else:
-            worst = [100 * (c.n / c.drag_exact - 1) for c in done if c.clump != "chain" and c.angle == 45 and c.title == c.label]
+            worst = [100 * (c.n / c.drag_exact - 1) for c in done if c.clump != "chain" and c.angle == 45 and
+                     c.title == c.label]
             cells = [f"{max(worst):.0f}", f"{np.mean(worst):.0f}", ""]
         rows.append([name] + cells + [f"{time_:.0f}", f"{time_ / plain:.2f}", f"{solved:.2g} s" if solved else ""])
     return rows
@@ -281,12 +288,13 @@ def draw_ladder(times, done, ladder, path):
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 4.8), gridspec_kw={"width_ratios": [1.25, 1]},
                                          constrained_layout=True)
     names = list(GEOMETRY)
-    styles = {"1": ("o", "C3", "one point per sphere"), "torque": ("s", "C1", "point with torque"), "12": ("^", "C0", "shell 12"),
-              "42": ("D", "C2", "shell 42"), "162": ("v", "C4", "shell 162")}
+    styles = {"1": ("o", "C3", "one point per sphere"), "torque": ("s", "C1", "point with torque"),
+              "12": ("^", "C0", "shell 12"), "42": ("D", "C2", "shell 42"), "162": ("v", "C4", "shell 162")}
     for level, (marker, colour, label) in styles.items():
         errors, _ = errors_of(level, done, ladder)
         left.semilogy(range(len(names)), np.maximum(errors, 1e-3), marker, color=colour, ms=6, label=label)
-    left.set_xticks(range(len(names)), [n.replace("_", " ") for n in names], rotation=50, ha="right", rotation_mode="anchor")
+    left.set_xticks(range(len(names)), [n.replace("_", " ") for n in names], rotation=50, ha="right",
+                    rotation_mode="anchor")
     left.set_ylabel("error of the drag against exact, %")
     left.set_ylim(5e-3, 40)
     left.grid(axis="y", alpha=0.3)
@@ -320,7 +328,8 @@ def check_ladder(c, done, ladder, own, times):
     for level, limit in SHELL_LIMIT.items():
         runs = [run for run in ladder if run.level == str(level) and run.angle == 45]
         worst = max(runs, key=lambda run: run.exact_error)
-        c.below(f"shell {level}, {len(runs)} clumps: velocity against exact, worst ({worst.label}), %", worst.exact_error, limit)
+        c.below(f"shell {level}, {len(runs)} clumps: velocity against exact, worst ({worst.label}), %",
+                worst.exact_error, limit)
     for level, (worst, mean) in LADDER_ERRORS.items():
         errors, _ = errors_of(level, done, ladder)
         c.holds(f"model {level}: every clump was run", len(errors) == len(GEOMETRY))
@@ -340,20 +349,23 @@ def check_ladder(c, done, ladder, own, times):
 
 def draw(done, path):
     plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
-    figure, (left, right) = plt.subplots(1, 2, figsize=(12, 5), gridspec_kw={"width_ratios": [1.25, 1]}, constrained_layout=True)
+    figure, (left, right) = plt.subplots(1, 2, figsize=(12, 5), gridspec_kw={"width_ratios": [1.25, 1]},
+                                         constrained_layout=True)
 
     # Drag against exact
     groups = list(GEOMETRY) + [f"chain of {n}" for n in (5, 10, 20, 50)]
     left.axhspan(*CLUMP_BAND, color="0.93", zorder=0)
     left.axhline(0, color="black", lw=1)
     left.text(len(groups) - 0.5, -0.15, "exact Stokes flow", ha="right", va="top", fontsize=9)
-    left.text(len(groups) - 0.5, -10.9, "band that the run must keep to", ha="right", va="bottom", fontsize=9, color="0.4")
+    left.text(len(groups) - 0.5, -10.9, "band that the run must keep to", ha="right", va="bottom", fontsize=9,
+              color="0.4")
     for angle, marker, colour in ((0, "o", "C0"), (45, "s", "C1"), (90, "^", "C2")):
         points = [(groups.index(c.label), c.drag_error) for c in done
                   if c.label in groups and c.angle == angle and c.title == c.label]
         shift = (angle - 45) / 45 * 0.17
         left.plot([k + shift for k, _ in points], [e for _, e in points], marker, color=colour, ms=6, label=f"{angle}°")
-    left.set_xticks(range(len(groups)), [g.replace("_", " ") for g in groups], rotation=50, ha="right", rotation_mode="anchor")
+    left.set_xticks(range(len(groups)), [g.replace("_", " ") for g in groups], rotation=50, ha="right",
+                    rotation_mode="anchor")
     left.set_xlim(-0.6, len(groups) - 0.4)
     left.set_ylim(-11.6, 0.6)
     left.set_ylabel("drag of the falling clump against exact, %")
@@ -364,7 +376,8 @@ def draw(done, path):
     angles = np.linspace(0, 90, 181)
     for n, clump, colour in ((10, "chain", "C3"), (2, "doublet", "C0")):
         name = f"{'doublet' if n == 2 else 'chain of 10'}"
-        right.plot(angles, chain_drift(*model_drags(n), angles), color=colour, lw=1.5, label=f"{name}: model, closed form")
+        right.plot(angles, chain_drift(*model_drags(n), angles), color=colour, lw=1.5,
+                   label=f"{name}: model, closed form")
         right.plot(angles, chain_drift(*CHAIN_EXACT[n], angles), "--", color=colour, lw=1.2, label=f"{name}: exact")
         points = [(c.angle, c.drift) for c in done if c.clump == clump and c.n == n and c.title == c.label]
         right.plot(*zip(*points), "o", color=colour, ms=6, mec="black", mew=0.5, label=f"{name}: runs")
@@ -386,7 +399,8 @@ def contact_sheet(done, ladder, path):
     for c, ax in zip(shown, axes.flat):
         ax.imshow(plt.imread(c.image))
         ax.set_axis_off()
-        ax.set_title(f"{c.label.replace('_', ' ')}\ndrag {shell[c.clump, c.angle]:.3f}, exact {c.drag_exact:.3f}", fontsize=9.5)
+        ax.set_title(f"{c.label.replace('_', ' ')}\ndrag {shell[c.clump, c.angle]:.3f}, exact {c.drag_exact:.3f}",
+                     fontsize=9.5)
     scale = plt.matplotlib.cm.ScalarMappable(plt.matplotlib.colors.Normalize(0, 0.7), "viridis")
     bar = figure.colorbar(scale, ax=axes, shrink=0.85, pad=0.01, extend="both")
     bar.set_label("drag of a sphere / drag of a lone sphere\nat the same velocity", fontsize=9.5)
@@ -413,7 +427,8 @@ def check(c, done):
     c.near("spin of the chiral clump, U0/a", np.linalg.norm(helix.W), 0.05795, 1e-5)
     c.holds("its sense is that of exact flow", helix.W @ helix.W_exact > 0)
     c.near("its drift, degrees", helix.drift, 2.65, 0.01)
-    c.below("spin of all others, U0/a", max(np.linalg.norm(run.W) for run in done if run.clump != "helix4_chiral"), 1e-8)
+    c.below("spin of all others, U0/a", max(np.linalg.norm(run.W) for run in done if run.clump != "helix4_chiral"),
+            1e-8)
     for kind, band, (least, most) in (("clumps", CLUMP_BAND, (-9.26, -2.94)), ("chains", CHAIN_BAND, (-4.61, -1.75))):
         errors = [run.drag_error for run in done if (run.clump == "chain") == (kind == "chains")]
         c.within(f"drag of the {kind} against exact, lowest, %", min(errors), *band)

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Lets the cloud fall with and without hydrodynamic interactions between the clumps, compares the speeds and draws them.
+"""Lets the cloud fall with and without hydrodynamic interactions between the clumps, compares the speeds and draws
+them.
 
     run.py --out DIR    results, images and pictures go to DIR (default: build/examples/settling_cloud)
     run.py --update     also refreshes the logs and the pictures in this folder
@@ -44,7 +45,8 @@ def lone_clump():
 
 
 def point_forces(centre):
-    """Mean settling speed when each clump is a point force of weight 4: its own speed, and Oseen's tensor of all others.
+    """Mean settling speed when each clump is a point force of weight 4: its own speed, and Oseen's tensor of all
+    others.
 
         U = U_1 + 4 < sum_(j != i) 3/4 (1/r + z^2/r^3) >
     """
@@ -55,7 +57,8 @@ def point_forces(centre):
 
 
 def formula(n, R):
-    """The same for n points spread evenly in a sphere of radius R, where < 1/r > = 6/(5R) over pairs, and z^2/r^2 = 1/3.
+    """The same for n points spread evenly in a sphere of radius R, where < 1/r > = 6/(5R) over pairs, and z^2/r^2 =
+    1/3.
 
         U = U_1 (1 + 6/5 n a_h/R),   a_h = 4/U_1 the hydrodynamic radius of a clump
     """
@@ -166,8 +169,8 @@ def main():
     montage(out, out / "settling_cloud.png")
     plot_speeds(curves, (t, exact, R), out / "speed.png")
 
-    # The cloud is still speeding up when it meets the floor, so its drag is a little less than its weight. Between two solves
-    # v' is as old as INTERVAL/2 relaxation times on average, which adds so much to the mass.
+    # The cloud is still speeding up when it meets the floor, so its drag is a little less than its weight. Between two
+    # solves v' is as old as INTERVAL/2 relaxation times on average, which adds so much to the mass.
     cloud = curves["all"]
     k = np.argmax(cloud[:, 1])
     rate = np.polyfit(cloud[k - 8:k - 1, 0], cloud[k - 8:k - 1, 1], 1)[0]
@@ -181,7 +184,8 @@ def main():
                                   (TITLE["all"], speed, ""),
                                   (f"  its acceleration of {rate:.2f} taken out", steady,
                                    f"{predicted:.2f} (point forces where the clumps are)"),
-                                  ("", np.nan, f"{formula(200, radius):.2f} (point forces, uniform, R = {radius:.2f})")):
+                                  ("", np.nan,
+                                   f"{formula(200, radius):.2f} (point forces, uniform, R = {radius:.2f})")):
         print(f"    {what:50}" + (f"{value:11.6f}" if np.isfinite(value) else 11 * " ") + f"    {expected}")
     print(f"pictures: {out / 'settling_cloud.png'}, {out / 'speed.png'}; images: {out / 'out'}\n")
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""10 000 spheres settle onto a floor, in a cell that repeats along it (in.settling_layer): a strip of pictures, and the structure
-against time.
+"""10 000 spheres settle onto a floor, in a cell that repeats along it (in.settling_layer): a strip of pictures, and the
+structure against time.
 
     run.py --out DIR    results and the picture go to DIR (default: build/examples/settling_layer)
     run.py --quick      400 spheres in place of 10 000: seconds
@@ -23,18 +23,22 @@ EARLY, FIRST = 2.0, 1.5         # until here speeds are those of the beginning; 
 
 
 def scatter(path, n, rows):
-    """In planes of a square lattice, each shifted at random, at random within a third of its spacing. Returns the side of the cell."""
+    """In planes of a square lattice, each shifted at random, at random within a third of its spacing. Returns the side
+    of the cell."""
     rng, L, k = np.random.default_rng(5), SPACING * rows, np.arange(n)
-    x = np.column_stack([k % rows + 0.5, k // rows % rows + 0.5, k // rows**2 + 0.54]) * SPACING + rng.uniform(-0.45, 0.45, (n, 3))
+    x = np.column_stack([k % rows + 0.5, k // rows % rows + 0.5, k // rows**2 + 0.54]) * SPACING + rng.uniform(
+        -0.45, 0.45, (n, 3))
     x[:, :2] = (x[:, :2] + rng.uniform(0, L, (n // rows**2 + 1, 2))[k // rows**2]) % L
     with open(path, "w") as data:
-        data.write(f"spheres\n\n{n} atoms\n1 atom types\n0 {L} xlo xhi\n0 {L} ylo yhi\n-2 {x[:, 2].max() + 5} zlo zhi\n\nAtoms\n\n")
+        data.write(f"spheres\n\n{n} atoms\n1 atom types\n0 {L} xlo xhi\n0 {L} ylo yhi\n"
+                   f"-2 {x[:, 2].max() + 5} zlo zhi\n\nAtoms\n\n")
         data.write("".join("{} 1 2 1 {:.10g} {:.10g} {:.10g}\n".format(i + 1, *p) for i, p in enumerate(x)))
     return L
 
 
 def settle(out, n, rows, steps):
-    """Frames (time, places), thermo rows (time, mean height, mean speed down, lowest centre, largest move of a step), side of the cell"""
+    """Frames (time, places), thermo rows (time, mean height, mean speed down, lowest centre, largest move of a step),
+    side of the cell"""
     L = scatter(out / "spheres.data", n, rows)
     finished("settling_layer", ["lmp", "-in", str(HERE / "in.settling_layer"), "-log", "log.settling"] + values(
         dict(spheres=out / "spheres.data", steps=steps, step=STEP, out="settling.places")), out)
@@ -63,20 +67,25 @@ def draw(frames, thermo, L, path):
     for k in range(4):
         t, x = frames[[0, len(frames) // 8, len(frames) // 3, len(frames) - 1][k]]
         side, above = panels[:, k]
-        for panel, (i, j), shown in ((side, (0, 2), x[(x[:, 1] < 8) & (x[:, 0] < wide)]), (above, (0, 1), x[(x[:, 0] < wide) & (x[:, 1] < wide)])):
+        for panel, (i, j), shown in ((side, (0, 2), x[(x[:, 1] < 8) & (x[:, 0] < wide)]),
+                                     (above, (0, 1), x[(x[:, 0] < wide) & (x[:, 1] < wide)])):
             shown = shown[np.argsort(-shown[:, 1] if panel is side else shown[:, 2])]
-            panel.add_collection(plt.matplotlib.collections.PatchCollection([plt.Circle(p[[i, j]], 1) for p in shown], lw=0.2, edgecolors="k",
-                                                                           facecolors=plt.cm.viridis(np.clip((shown[:, 2] - 1) / 8, 0, 1))))
+            panel.add_collection(plt.matplotlib.collections.PatchCollection([plt.Circle(p[[i, j]], 1) for p in shown],
+                                                                            lw=0.2, edgecolors="k",
+                                                                            facecolors=plt.cm.viridis(
+                                                                                np.clip((shown[:, 2] - 1) / 8, 0, 1))))
             panel.set(aspect="equal", xticks=[], yticks=[], xlim=(0, wide), ylim=(0, top if panel is side else wide))
             panel.spines["left"].set_visible(False)
         side.set_title(f"t = {t:.0f}")
     profile, layer, speed = lower.subplots(1, 3)
     bins = np.arange(0, top + 0.25, 0.25)
     for k, colour in zip((0, len(frames) // 8, len(frames) // 3, len(frames) - 1), ("C7", "C1", "C2", "C0")):
-        profile.plot(fraction_at(frames[k][1], L, bins), 0.5 * (bins[1:] + bins[:-1]), color=colour, label=f"t = {frames[k][0]:.0f}")
+        profile.plot(fraction_at(frames[k][1], L, bins), 0.5 * (bins[1:] + bins[:-1]), color=colour,
+                     label=f"t = {frames[k][0]:.0f}")
     profile.set(xlabel="volume fraction", ylabel="height / radius", xlim=(0, 0.8), title="profile")
     profile.legend(frameon=False)
-    layer.plot([t for t, _ in frames], [np.pi * (x[:, 2] < FIRST).sum() / L**2 for t, x in frames], label="lowest layer")
+    layer.plot([t for t, _ in frames], [np.pi * (x[:, 2] < FIRST).sum() / L**2 for t, x in frames],
+               label="lowest layer")
     layer.set(xlabel="time", ylabel="area fraction", ylim=(0, 0.9), title="lowest layer (centres below 1.5)")
     speed.plot(thermo[1:, 0], thermo[1:, 2])
     speed.set(xlabel="time", ylabel="mean / that of a lone sphere", ylim=(0, None), title="speed downwards")
@@ -99,7 +108,8 @@ def main():
     c.near("at the end: force on the floor over the weight of all", on_floor, 1.0, 0.1)
     c.below("at the end: mean speed", abs(thermo[-1, 2]), 0.03)
     c.within("at the end: area fraction of the lowest layer", layer[-1], 0.6, 0.9)
-    c.holds("the lowest layer fills up: a third, two thirds of the run, its end", layer[0] < layer[len(layer) // 3] <= layer[-1] + 0.02)
+    c.holds("the lowest layer fills up: a third, two thirds of the run, its end", layer[0] < layer[len(layer) // 3] <=
+            layer[-1] + 0.02)
     c.within("deepest dent in the floor, radii", 1 - thermo[-1, 3], 0.03, 0.35)
     if given.update:
         shutil.copy(given.out / "settling_layer.png", HERE)

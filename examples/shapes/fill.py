@@ -1,20 +1,26 @@
 #!/usr/bin/env python3
-"""Fills a closed surface with overlapping spheres, as a rigid clump for pair_style stokes_dynamics, and says how wrong its drag is.
+"""Fills a closed surface with overlapping spheres, as a rigid clump for pair_style stokes_dynamics, and says how wrong
+its drag is.
 
     fill.py ellipsoid A B C     half-axes                    fill.py cube EDGE
     fill.py rod LENGTH RADIUS   with half-spheres at the ends; LENGTH without them
     fill.py disc RADIUS THICKNESS                            fill.py stl FILE [SCALE]     ASCII or binary
 
-    --gap 0.05       how deep the spheres may leave the surface uncovered, over the radius of the sphere of the same volume
-    --grow 0.3       by how much the inscribed spheres grow, over the gap, so that the surface runs between them; 0: they stay inscribed
-    --density 1      mass of the body over its volume: the densities of the spheres are such that the clump weighs what the body does
-    --out NAME       writes NAME.data (atom_style hybrid sphere bond, molecule 1) and NAME.mol (for create_atoms and fix rigid/small)
+    --gap 0.05       how deep the spheres may leave the surface uncovered, over the radius of the sphere of the
+                     same volume
+    --grow 0.3       by how much the inscribed spheres grow, over the gap, so that the surface runs between
+                     them; 0: they stay inscribed
+    --density 1      mass of the body over its volume: the densities of the spheres are such that the clump weighs
+                     what the body does
+    --out NAME       writes NAME.data (atom_style hybrid sphere bond, molecule 1) and NAME.mol (for create_atoms and fix
+                     rigid/small)
     --finer 2        compare with a fill of a gap smaller by this factor; 0: with none
     --shell 12       points on each sphere in this comparison
 
-The spheres are first inscribed: each touches the surface from within at a sample of it (the shrinking ball of Ma, Bae & Choi 2012). Those
-that cover most of what is not covered yet are taken first. Then all radii grow by --grow times the gap. Drag and rotation come from the Python module stokesdyn, without LAMMPS. For
-ellipsoids the exact values stand beside them (Oberbeck 1876, Jeffery 1922).
+The spheres are first inscribed: each touches the surface from within at a sample of it (the shrinking ball of Ma, Bae &
+Choi 2012). Those that cover most of what is not covered yet are taken first. Then all radii grow by --grow times the
+gap. Drag and rotation come from the Python module stokesdyn, without LAMMPS. For ellipsoids the exact values stand
+beside them (Oberbeck 1876, Jeffery 1922).
 """
 import argparse
 import pathlib
@@ -23,7 +29,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from surfaces import np, Error, SHAPES, cube, inertia, surface, volume_and_centre    # noqa: E402,F401
 
-# --- the fill ---------------------------------------------------------------------------------------------------------------
+# --- the fill ---------------------------------------------------------------------------------------------------------
 
 def samples(triangles, n, seed=1):
     """n points of the surface, evenly spread, with inward normals"""
@@ -40,7 +46,8 @@ def samples(triangles, n, seed=1):
 
 def inscribed(x, normal):
     """Centres and radii of the largest spheres that touch each sample x from within and hold no other sample.
-    A sphere through x[i] with its centre on the normal passes through x[j] if its radius is |x[j] - x[i]|^2 / (2 normal.(x[j] - x[i]))."""
+    A sphere through x[i] with its centre on the normal passes through x[j] if its radius is |x[j] - x[i]|^2 / (2
+    normal.(x[j] - x[i]))."""
     radius = np.empty(len(x))
     for i in range(len(x)):
         d = x - x[i]
@@ -52,8 +59,8 @@ def inscribed(x, normal):
 
 
 def fill(triangles, gap, grow=0.0, n=3000):
-    """Centres and radii of inscribed spheres such that no sample of the surface is farther than gap from the nearest of them; the radii
-    are then larger by grow times the gap"""
+    """Centres and radii of inscribed spheres such that no sample of the surface is farther than gap from the nearest of
+    them; the radii are then larger by grow times the gap"""
     x, normal = samples(triangles, n)
     centre, radius = inscribed(x, normal)
     covers = np.empty((n, n), bool)
@@ -70,7 +77,8 @@ def fill(triangles, gap, grow=0.0, n=3000):
 
 
 def densities(centre, radius, triangles, density):
-    """Of the spheres, so that the clump has the mass of the body and its centre of mass: close to one number for all of them"""
+    """Of the spheres, so that the clump has the mass of the body and its centre of mass: close to one number for all of
+    them"""
     volume, middle = volume_and_centre(triangles)
     own = 4 / 3 * np.pi * radius**3
     part = own * volume / own.sum()
@@ -83,7 +91,7 @@ def densities(centre, radius, triangles, density):
     return density * part / own
 
 
-# --- how wrong it is --------------------------------------------------------------------------------------------------------
+# --- how wrong it is --------------------------------------------------------------------------------------------------
 
 def ellipsoid_resistance(axes):
     """Drag along the three half-axes and torque about them, viscosity 1"""
@@ -113,14 +121,15 @@ def report(values, reference, name):
                                    for what, v, w in zip(("drag", "rotation"), values, reference)))
 
 
-# --- files ------------------------------------------------------------------------------------------------------------------
+# --- files ------------------------------------------------------------------------------------------------------------
 
 def write_data(path, centre, radius, density):
     low, high = (centre - radius[:, None]).min(axis=0) - 1, (centre + radius[:, None]).max(axis=0) + 1
     box = "".join(f"{a:.8g} {b:.8g} {c}lo {c}hi\n" for a, b, c in zip(low, high, "xyz"))
     rows = "".join("{} 1 {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} 1\n".format(i + 1, *p, 2 * r, d)
                    for i, (p, r, d) in enumerate(zip(centre, radius, density)))
-    path.write_text(f"inscribed spheres, by fill.py\n\n{len(radius)} atoms\n1 atom types\n{box}\nAtoms # hybrid\n\n{rows}")
+    path.write_text(f"inscribed spheres, by fill.py\n\n{len(radius)} atoms\n1 atom types\n{box}\n"
+                    f"Atoms # hybrid\n\n{rows}")
 
 
 def write_molecule(path, centre, radius, triangles, density):
@@ -150,17 +159,20 @@ def main(argv=None):
         raise Error(f"--gap {given.gap}: must be 0.01 or larger, as the surface has 3000 samples")
     centre, radius = fill(triangles, given.gap * size, given.grow)
     density = densities(centre, radius, triangles, given.density)
-    print(f"{len(radius)} spheres, radii {radius.min():.4g} to {radius.max():.4g}; volume of the body {volume:.6g}, its centre "
-          f"{middle.round(6).tolist()}; the spheres weigh together {(density * 4 / 3 * np.pi * radius**3).sum():.6g}")
+    print(f"{len(radius)} spheres, radii {radius.min():.4g} to {radius.max():.4g}; volume of the body {volume:.6g}, "
+          f"its centre {middle.round(6).tolist()}; the spheres weigh together "
+          f"{(density * 4 / 3 * np.pi * radius**3).sum():.6g}")
     if given.out:
         write_data(given.out.with_suffix(".data"), centre, radius, density)
         write_molecule(given.out.with_suffix(".mol"), centre, radius, triangles, given.density)
     if given.finer > 0 or given.shape == "ellipsoid":
         *values, points = resistance(centre, radius, given.shell)
-        print("  {} points: drag {:.5g} {:.5g} {:.5g} viscosity, rotation {:.5g} {:.5g} {:.5g} viscosity; along and about x, y, z".format(
+        print("  {} points: drag {:.5g} {:.5g} {:.5g} viscosity, rotation {:.5g} {:.5g} {:.5g} viscosity; "
+              "along and about x, y, z".format(
             points, *values[0], *values[1]))
         if given.shape == "ellipsoid":
-            report(values, ellipsoid_resistance([float(word) for word in given.sizes]), "error, against the exact values:")
+            report(values, ellipsoid_resistance([float(word) for word in given.sizes]),
+                   "error, against the exact values:")
         if given.finer > 0:
             more, large = fill(triangles, max(given.gap / given.finer, 0.01) * size, given.grow)
             report(values, resistance(more, large, given.shell)[:2], f"error, against {len(large)} spheres:")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Ellipsoids, rods, discs, cubes and bodies from STL files as rigid clumps of overlapping spheres (fill.py): errors of drag and rotation,
-and the weight of such a clump (in.weight).
+"""Ellipsoids, rods, discs, cubes and bodies from STL files as rigid clumps of overlapping spheres (fill.py): errors of
+drag and rotation, and the weight of such a clump (in.weight).
 
     run.py --out DIR     results and the picture go to DIR (default: build/examples/shapes)
     run.py --quick       ellipsoids, files and weight only
@@ -37,7 +37,8 @@ def spheroid(a, b):
 
 
 def on_axis(n, a=3.0, b=1.0):
-    """n spheres that touch a prolate spheroid from within: centres evenly between those of the tips, which have radius b^2/a"""
+    """n spheres that touch a prolate spheroid from within: centres evenly between those of the tips, which have radius
+    b^2/a"""
     x = np.linspace(-1, 1, n) * (a - b * b / a)
     return np.column_stack([x, 0 * x, 0 * x]), np.sqrt(np.maximum(b * b * (1 - x**2 / (a * a - b * b)), (b * b / a)**2))
 
@@ -75,10 +76,12 @@ def stl(out, c):
     """A cube as an ASCII and as a binary file, turned inside out, and with a hole"""
     triangles = fill.cube(2.0, 1).astype("<f4")
     def binary(faces):
-        return b"cube".ljust(80) + struct.pack("<I", len(faces)) + b"".join(bytes(12) + face.tobytes() + b"\0\0" for face in faces)
+        return b"cube".ljust(80) + struct.pack("<I", len(faces)) + b"".join(bytes(12) + face.tobytes() + b"\0\0"
+                                                                            for face in faces)
     def text(faces):
-        return "solid cube\n" + "".join("facet normal 0 0 0\nouter loop\n" + "".join("vertex {:.7g} {:.7g} {:.7g}\n".format(*p) for p in face) +
-                                        "endloop\nendfacet\n" for face in faces) + "endsolid\n"
+        return ("solid cube\n" + "".join("facet normal 0 0 0\nouter loop\n" +
+                                         "".join("vertex {:.7g} {:.7g} {:.7g}\n".format(*p) for p in face) +
+                                         "endloop\nendfacet\n" for face in faces) + "endsolid\n")
     (out / "binary.stl").write_bytes(binary(triangles))
     (out / "text.stl").write_text(text(triangles))
     (out / "inside_out.stl").write_bytes(binary(np.ascontiguousarray(triangles[:, ::-1])))
@@ -87,28 +90,33 @@ def stl(out, c):
         volume, middle = fill.volume_and_centre(fill.surface("stl", [str(out / f"{name}.stl")]))
         c.near(f"cube from {name}.stl: volume", volume, 8, 1e-6)
     mass, _, inertia = fill.inertia(fill.surface("stl", [str(out / "text.stl"), "2"]), 0.5)
-    c.below("cube of edge 4, density 0.5: mass and moments of inertia", np.abs(np.array([mass / 32 - 1, *(inertia / (32 * 16 / 6)) -
-                                                                                         (1, 1, 1, 0, 0, 0)])).max(), 1e-6)
+    c.below("cube of edge 4, density 0.5: mass and moments of inertia",
+            np.abs(np.array([mass / 32 - 1, *(inertia / (32 * 16 / 6)) -
+                             (1, 1, 1, 0, 0, 0)])).max(), 1e-6)
     try:
         fill.surface("stl", [str(out / "hole.stl")])
         said = ""
     except fill.Error as why:
         said = str(why)
-    c.holds("cube with a hole: refused, and told how many edges are open", "not closed: 3 edges belong to one triangle" in said)
+    c.holds("cube with a hole: refused, and told how many edges are open",
+            "not closed: 3 edges belong to one triangle" in said)
 
 
 def weight(out, c):
     """The same clump by the densities of fill.py, and by the density of the material"""
     fill.main(["ellipsoid", "3", "1", "1", "--gap", "0.1", "--finer", "0", "--out", str(out / "body")])
-    drag, volume = fill.ellipsoid_resistance((3, 1, 1))[0][2], fill.volume_and_centre(fill.surface("ellipsoid", "311"))[0]
+    drag, volume = fill.ellipsoid_resistance((3, 1, 1))[0][2], fill.volume_and_centre(
+        fill.surface("ellipsoid", "311"))[0]
     for density in (0, 1):
         said = finished("shapes", ["lmp", "-in", "in.weight", "-log", str(out / "weight.log")] + values(
             dict(body=out / "body.data", set_density=density)), HERE)
         mass, speed = map(float, re.search(r"^ *0 +(\S+) +(\S+) *$", said, re.M).groups())
-        print(f"  density {density or 'of fill.py'}: mass {mass:.4f}, speed {speed:.4f}; the body has {volume:.4f}, {volume / drag:.4f}")
+        print(f"  density {density or 'of fill.py'}: mass {mass:.4f}, speed {speed:.4f}; the body has {volume:.4f}, "
+              f"{volume / drag:.4f}")
         if density == 0:
             c.near("weight: mass of the clump", mass, volume, 1e-6 * volume)
-            c.near("weight: speed, exact for the ellipsoid across its axis", speed, 4 * np.pi / drag, 0.01 * 4 * np.pi / drag)
+            c.near("weight: speed, exact for the ellipsoid across its axis", speed, 4 * np.pi / drag,
+                   0.01 * 4 * np.pi / drag)
         else:
             c.within("weight: with the density of the material, mass too large by a factor", mass / volume, 2, 6)
 
@@ -127,7 +135,8 @@ def balls(panel, x, radius):
             if abs(level - d) < a:
                 s = np.sqrt(a * a - (level - d)**2)
                 light = (level - d) / a if level > d else 0
-                panel.add_patch(plt.Circle(p, s, lw=0, color=tuple(np.clip(base * (0.6 + 0.4 * light) + 0.35 * light**2, 0, 1))))
+                panel.add_patch(plt.Circle(p, s, lw=0,
+                                           color=tuple(np.clip(base * (0.6 + 0.4 * light) + 0.35 * light**2, 0, 1))))
     panel.set(xlim=(flat.min() - 1.2, flat.max() + 1.2), ylim=(flat[:, 1].min() - 1.3, flat[:, 1].max() + 1.3))
     panel.set_aspect("equal")
     panel.axis("off")
@@ -144,7 +153,8 @@ def draw(rows, path, c):
         x, a = fill.fill(triangles, gap * size, 0.3)
         finer = fill.fill(triangles, gap / 2 * size, 0.3)
         drag, rotation = errors(fill.resistance(x, a, 12)[:2], fill.resistance(*finer, 12)[:2])
-        print(f"  {words}, gap {gap}: {len(a)} spheres differ from {len(finer[1])} by {drag:.2f} % (drag), {rotation:.2f} % (rotation)", flush=True)
+        print(f"  {words}, gap {gap}: {len(a)} spheres differ from {len(finer[1])} by {drag:.2f} % (drag), "
+              f"{rotation:.2f} % (rotation)", flush=True)
         c.below(f"{words}: drag against twice as fine a fill, per cent", drag, 2.5)
         panel = figure.add_subplot(grid[k // 2, k % 2])
         balls(panel, x, a)

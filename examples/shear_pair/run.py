@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Two spheres in a strain and in a shear flow: the functions A and B of Batchelor & Green, stresslets, paths that pass and closed ones,
-by multiblobs with films beside exact Stokes flow.
+"""Two spheres in a strain and in a shear flow: the functions A and B of Batchelor & Green, stresslets, paths that pass
+and closed ones, by multiblobs with films beside exact Stokes flow.
 
     run.py --out DIR    tables and picture go to DIR (default: build/examples/shear_pair)
     run.py --update     also refreshes the picture in this folder
@@ -28,7 +28,7 @@ PASS = 34.0
 CLOSED = {"closed, in the plane": ((3, 0, 0), 25.0, 0.25), "closed, side by side": ((0, 0.5, 2.05), 40.0, 0.05)}
 
 
-# --- exact -------------------------------------------------------------------------------------------------------------------
+# --- exact ------------------------------------------------------------------------------------------------------------
 
 
 def functions(gap):
@@ -39,13 +39,15 @@ def functions(gap):
     at, known = np.log(gap), np.log(EXACT["gap"])
     # what varies little: (1 - A) over the gap near contact, A r^3 far away, both in 1 - A over x/(1 + x)
     near = EXACT["gap"] / (1 + EXACT["gap"])
-    return 1 - cubic(at, known, (1 - EXACT["A"]) / near) * gap / (1 + gap), cubic(at, known, EXACT["B"] * (2 + EXACT["gap"])**3) / r**3
+    return (1 - cubic(at, known, (1 - EXACT["A"]) / near) * gap / (1 + gap),
+            cubic(at, known, EXACT["B"] * (2 + EXACT["gap"])**3) / r**3)
 
 
 def cubic(x, xs, ys):
     """Lagrange's polynomial through the four nearest places"""
     first = min(max(np.searchsorted(xs, x) - 2, 0), len(xs) - 4)
-    return sum(ys[i] * np.prod([(x - xs[j]) / (xs[i] - xs[j]) for j in range(first, first + 4) if j != i]) for i in range(first, first + 4))
+    return sum(ys[i] * np.prod([(x - xs[j]) / (xs[i] - xs[j]) for j in range(first, first + 4) if j != i])
+               for i in range(first, first + 4))
 
 
 def drift(r):
@@ -70,7 +72,7 @@ def exact_path(r, time, steps=12000):
     return np.array(path)
 
 
-# --- runs --------------------------------------------------------------------------------------------------------------------
+# --- runs -------------------------------------------------------------------------------------------------------------
 
 
 def measured(lammps, model):
@@ -81,13 +83,16 @@ def measured(lammps, model):
         rows = []
         for d, n, m in turns:
             r = 2 + gap
-            lammps.place(np.array([-r / 2 * d, r / 2 * d]), f"cut_off_distance inf {model} lubrication yes lubrication_gap 1e-6 "
+            lammps.place(np.array([-r / 2 * d, r / 2 * d]),
+                         f"cut_off_distance inf {model} lubrication yes lubrication_gap 1e-6 "
                          "fluid_velocity v_ux v_uy v_uz")
             stresslets = []
-            for E in (np.outer(d, d) - np.eye(3) / 3, (np.outer(d, n) + np.outer(n, d)) / 2, (np.outer(m, n) + np.outer(n, m)) / 2):
+            for E in (np.outer(d, d) - np.eye(3) / 3, (np.outer(d, n) + np.outer(n, d)) / 2,
+                      (np.outer(m, n) + np.outer(n, m)) / 2):
                 v, S = lammps.strained(E)
                 stresslets.append((v[1] - v[0], np.einsum("kab,ab->k", S, E).mean() / np.sum(E * E)))
-            rows.append((-stresslets[0][0] @ d / (2 / 3 * r), -stresslets[1][0] @ n / (r / 2), *[S for _, S in stresslets]))
+            rows.append((-stresslets[0][0] @ d / (2 / 3 * r), -stresslets[1][0] @ n / (r / 2),
+                         *[S for _, S in stresslets]))
         found.append((np.mean(rows, axis=0), np.std(rows, axis=0)))
     return np.array(found).transpose(1, 0, 2)
 
@@ -97,7 +102,8 @@ def path_of(out, tag, start, time, step=0.01, points=12):
     x, y, z = start
     file = out / f"{tag.replace(' ', '_')}.path"
     finished("shear_pair", ["lmp", "-in", "in.shear_pair", "-log", "none"] +
-             values(dict(x=x, y=y, z=z, time=time, step=step, points=points, path=file, every=max(1, round(0.05 / step)))), HERE)
+             values(dict(x=x, y=y, z=z, time=time, step=step, points=points, path=file,
+                         every=max(1, round(0.05 / step)))), HERE)
     return np.array([rows[1, 1:4] - rows[0, 1:4] for _, rows in dumped(file)])
 
 
@@ -113,7 +119,8 @@ def half_turn(path, time):
 
 def draw(found, paths, exact, target):
     plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
-    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(13, 4.6), layout="constrained", width_ratios=[1, 1, 1.5])
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(13, 4.6), layout="constrained",
+                                                 width_ratios=[1, 1, 1.5])
     for panel, first, names in ((left, 0, ("A", "B")), (middle, 2, ("S_along", "S_with", "S_across"))):
         for k, name in enumerate(names):
             panel.semilogx(EXACT["gap"], EXACT[name], "k-", lw=1, label="exact" if k == 0 else None)
@@ -122,8 +129,8 @@ def draw(found, paths, exact, target):
         for model, (mark, colour) in MODELS.items():
             mean, scatter = found[model]
             for k in range(len(names)):
-                panel.errorbar(GAPS, mean[:, first + k], scatter[:, first + k], fmt=mark, color=colour, ms=5 if mark == "o" else 3,
-                               label=model if k == 0 else None)
+                panel.errorbar(GAPS, mean[:, first + k], scatter[:, first + k], fmt=mark, color=colour,
+                               ms=5 if mark == "o" else 3, label=model if k == 0 else None)
         panel.set(xlabel="gap / radius")
     left.legend(loc="center left", bbox_to_anchor=(0, 0.62), fontsize=8)
     left.set(title="motion in a strain", ylim=(0, 1.12))
@@ -150,7 +157,8 @@ def main():
     columns = ("A", "B", "S_along", "S_with", "S_across")
     print("\n  gap        " + "".join(f"{name:>26}" for name in columns) + "     (exact, 12 points, 42 points)")
     for i, gap in enumerate(GAPS):
-        print(f"  {gap:<10.6g} " + "".join(f"{EXACT[name][2 * i]:10.4f}" + "".join(f"{found[m][0][i, k]:8.4f}" for m in MODELS)
+        print(f"  {gap:<10.6g} " + "".join(f"{EXACT[name][2 * i]:10.4f}" +
+                                           "".join(f"{found[m][0][i, k]:8.4f}" for m in MODELS)
                                           for k, name in enumerate(columns)))
     near = (GAPS >= 1e-5) & (GAPS <= 0.51)
     for model, limit in (("multiblob 12", 1.0), ("multiblob 42", 0.7)):
@@ -165,7 +173,8 @@ def main():
         paths[name], exact[name] = path_of(given.out, name, start, PASS), exact_path(start, PASS)
         gaps = [np.linalg.norm(p, axis=1).min() - 2 for p in (paths[name], exact[name])]
         c.near(f"passing, {name}: smallest gap", gaps[0], gaps[1], 0.2 * gaps[1])
-        c.below(f"passing, {name}: distance to the exact path at the end, sideways", np.abs(paths[name][-1] - exact[name][-1])[1:].max(), 0.03)
+        c.below(f"passing, {name}: distance to the exact path at the end, sideways",
+                np.abs(paths[name][-1] - exact[name][-1])[1:].max(), 0.03)
         c.below(f"passing, {name}: distance to the mirror image of its beginning, sideways",
                 abs(np.interp(-start[0], paths[name][:, 0], paths[name][:, 1]) - start[1]), 0.03)
     for name, (start, time, apart) in CLOSED.items():
@@ -173,7 +182,8 @@ def main():
         (half, place), (exact_half, _) = half_turn(path, time), half_turn(whole, time)
         gaps = [np.linalg.norm(p, axis=1).min() - 2 for p in (path, whole)]
         print(f"  {name}: smallest gap {gaps[0]:.2e}, exact {gaps[1]:.2e}")
-        c.below(f"{name}: distance to where it began after half a turn, turned back", np.linalg.norm(place - start), apart)
+        c.below(f"{name}: distance to where it began after half a turn, turned back", np.linalg.norm(place - start),
+                apart)
         c.near(f"{name}: time of half a turn over the exact one", half / exact_half, 1, 0.08)
         paths[name], exact[name] = path, whole
     draw(found, paths, exact, given.out / "shear_pair.png")

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Turns STL files and simple shapes into particles of water, walls and bodies for pair_style sph/artVisc/tensCorr: a data file of
-atom_style sph, an infile of fix rigid for each body, and a picture of cuts.
+"""Turns STL files and simple shapes into particles of water, walls and bodies for pair_style sph/artVisc/tensCorr: a
+data file of atom_style sph, an infile of fix rigid for each body, and a picture of cuts.
 
-    particles.py --spacing 0.05 --tank 3 1 0.8 --level 0.6 --body hull.stl scale mm at 1.5 0.5 0.6 density 400 --out scene
-    particles.py --spacing 0.05 --vessel bowl.stl --level 0.3 --out scene
+    particles.py --spacing 0.05 --tank 3 1 0.8 --level 0.6 --body hull.stl scale mm at 1.5 0.5 0.6 density 400 --out
+    scene particles.py --spacing 0.05 --vessel bowl.stl --level 0.3 --out scene
 
     --tank X Y Z      a tank 0..X, 0..Y, 0..Z that is open above; or
     --vessel SHAPE    a closed surface that is the inside of a vessel; its wall stands around it
@@ -12,33 +12,36 @@ atom_style sph, an infile of fix rigid for each body, and a picture of cuts.
     --body SHAPE      a body of its own type, 3 and up; may be given several times
     --spacing DX      distance of the particles; X, Y, Z and the level are rounded to it
     --h 1.5           smoothing length over the spacing: walls are 2 h thick, the reach of the kernel
-    --fit             moves each wall and body by up to a quarter of a spacing to where the volume of its particles is best, and says how
+    --fit             moves each wall and body by up to a quarter of a spacing to where the volume of its particles is
+                      best, and says how
     --density 1000    of the water: all particles have the mass density DX^3
-    --out NAME        writes NAME.data, NAME.3.body .. (mass, centre, inertia of the bodies for fix rigid infile), NAME.png
+    --out NAME        writes NAME.data, NAME.3.body .. (mass, centre, inertia of the bodies for fix rigid
+                      infile), NAME.png
 
-SHAPE is FILE.stl (ASCII or binary; other files if the Python module trimesh is installed), ellipsoid A B C (half-axes), rod LENGTH RADIUS,
-disc RADIUS THICKNESS or cube EDGE, and after it any of
+SHAPE is FILE.stl (ASCII or binary; other files if the Python module trimesh is installed), ellipsoid A B C (half-axes),
+rod LENGTH RADIUS, disc RADIUS THICKNESS or cube EDGE, and after it any of
 
     scale S           a factor, or the unit of the file if the scene is in metres: mm cm m inch foot
     turn AXIS DEGREES about x, y or z through the origin of the file
     at X Y Z          where its origin goes, after scale and turn
     density RHO       of a body, for its infile (that of the water unless given)
 
-Types: 1 water, 2 walls, 3 and up bodies. A particle belongs to a body when its centre lies in the surface. It is an error when a surface
-is not closed, or when parts meet. It needs Python and numpy, and matplotlib for the picture.
+Types: 1 water, 2 walls, 3 and up bodies. A particle belongs to a body when its centre lies in the surface. It is an
+error when a surface is not closed, or when parts meet. It needs Python and numpy, and matplotlib for the picture.
 """
 import argparse
 import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from surfaces import np, Error, SHAPES, closed, inertia, inside, read, section, surface, volume_and_centre    # noqa: E402
+from surfaces import (np, Error, SHAPES, closed, inertia, inside, read, section, surface,  # noqa: E402
+                      volume_and_centre)
 
 WATER, WALL, BODY = 1, 2, 3
 UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0, "inch": 0.0254, "foot": 0.3048}
 
 
-# --- parts --------------------------------------------------------------------------------------------------------------------
+# --- parts ------------------------------------------------------------------------------------------------------------
 
 class Part:
     """A closed surface in its place: name, triangles, density (None: that of the water)"""
@@ -60,7 +63,8 @@ class Part:
                 raise Error(f"{self.name}: {key}: known are scale S, turn AXIS DEGREES, at X Y Z, density RHO")
             given[key] = [words.pop(0) for _ in range(needs[key])]
         factor = self._scale(*given.get("scale", ["1"]))
-        self.triangles = factor * triangles @ self._turn(*given.get("turn", ["z", "0"])).T + self._numbers(given.get("at", ["0"] * 3), "at")
+        self.triangles = factor * triangles @ self._turn(*given.get("turn", ["z", "0"])).T + self._numbers(
+            given.get("at", ["0"] * 3), "at")
         if "density" in given:
             self.density = self._numbers(given["density"], "density")[0]
             if self.density <= 0:
@@ -94,7 +98,7 @@ class Part:
         return self.triangles.min(axis=(0, 1)), self.triangles.max(axis=(0, 1))
 
 
-# --- the lattice --------------------------------------------------------------------------------------------------------------
+# --- the lattice ------------------------------------------------------------------------------------------------------
 
 def shifted(cells, by):
     """The cells moved by whole cells; what leaves the lattice is lost"""
@@ -116,7 +120,8 @@ def around(cells, reach):
 
 
 def thin(cells, reach):
-    """Cells of a solid that belong to no ball in it whose diameter is the reach: there water on one side feels water on the other"""
+    """Cells of a solid that belong to no ball in it whose diameter is the reach: there water on one side feels water on
+    the other"""
     return cells & ~around(~around(~cells, reach / 2), reach / 2)
 
 
@@ -152,18 +157,21 @@ class Scene:
             fixed = number < len(walls)
             taken = cells & (self.type > 0) & ~(container if fixed else np.zeros_like(container))
             if taken.any():
-                raise Error(f"{part.name}: {taken.sum()} of its particles stand in another part or in the wall: move it")
+                raise Error(f"{part.name}: {taken.sum()} of its particles stand in another part or in "
+                            "the wall: move it")
             self.type[cells] = WALL if fixed else BODY + number - len(walls)
         self._pour(room)
 
     def _lattice(self, tank):
         """Planes of nodes, half a spacing off the walls of the tank; returns its nodes"""
-        boxes = [part.box() for part in [*self.parts, self.vessel] if part] + ([(np.zeros(3), np.array(tank))] if tank else [])
+        boxes = [part.box() for part in [*self.parts, self.vessel]
+                 if part] + ([(np.zeros(3), np.array(tank))] if tank else [])
         margin = self.layers + 1    # and room for what --fit moves
         low = np.floor(np.min([b[0] for b in boxes], axis=0) / self.dx + 1e-6).astype(int) - margin
         high = np.ceil(np.max([b[1] for b in boxes], axis=0) / self.dx - 1e-6).astype(int) + margin
         if np.prod((high - low).astype(float)) > 1e8:
-            raise Error(f"the scene is {' x '.join(map(str, high - low))} spacings: too many. Are spacing and scale in the same unit?")
+            raise Error(f"the scene is {' x '.join(map(str, high - low))} spacings: too many. Are spacing and scale in "
+                        "the same unit?")
         self.axes = [(np.arange(a, b) + 0.5) * self.dx for a, b in zip(low, high)]
         self.low, self.high = low * self.dx, high * self.dx
         if not tank:
@@ -198,14 +206,15 @@ class Scene:
         volume = volume_and_centre(part.triangles)[0]
         off = cells.sum() * self.dx**3 / volume - 1
         weak = thin(cells, 2 * self.h).sum() / cells.sum()
-        self.said.append(f"{part.name}: {cells.sum()} particles, volume {volume:.6g}, that of the particles {100 * off:+.2f} %; "
-                         f"{100 * weak:.0f} % of it is thinner than the reach of the kernel, {2 * self.h * self.dx:.4g}")
+        self.said.append(f"{part.name}: {cells.sum()} particles, volume {volume:.6g}, that of the particles "
+                         f"{100 * off:+.2f} %; {100 * weak:.0f} % of it is thinner than the reach of the kernel, "
+                         f"{2 * self.h * self.dx:.4g}")
         if abs(off) > 0.01:
-            self.said.append(f"WARNING: {part.name}: the volume of its particles is off by more than 1 %: take a smaller spacing, "
-                             "or --fit")
+            self.said.append(f"WARNING: {part.name}: the volume of its particles is off by more than 1 %: "
+                             "take a smaller spacing, or --fit")
         if weak > 0.3:
-            self.said.append(f"WARNING: {part.name}: too thin, water on one side feels water on the other: take a smaller spacing or a "
-                             "thicker body, or give the wetted side as --vessel")
+            self.said.append(f"WARNING: {part.name}: too thin, water on one side feels water on the other: "
+                             "take a smaller spacing or a thicker body, or give the wetted side as --vessel")
         return cells
 
     def _pour(self, room):
@@ -214,7 +223,8 @@ class Scene:
         if not wet.any():
             raise Error(f"level {self.level:g}: there is no room for water below it")
         free = room & (self.type == 0)
-        open_above = reached(free, free & (np.arange(len(self.axes[2])) == np.nonzero(free.any(axis=(0, 1)))[0].max())[None, None, :])
+        open_above = reached(free, free & (np.arange(len(self.axes[2])) ==
+                                           np.nonzero(free.any(axis=(0, 1)))[0].max())[None, None, :])
         self.type[wet & open_above] = WATER
         dry = (wet & ~open_above).sum()
         if dry:
@@ -226,7 +236,7 @@ class Scene:
         return np.stack([axis[k] for axis, k in zip(self.axes, node)], axis=1), self.type[node]
 
 
-# --- files --------------------------------------------------------------------------------------------------------------------
+# --- files ------------------------------------------------------------------------------------------------------------
 
 def write_data(path, scene, density):
     x, kind = scene.particles()
@@ -235,9 +245,11 @@ def write_data(path, scene, density):
         file.write(f"SPH particles, spacing {scene.dx:.9g}, by particles.py\n\n{len(x)} atoms\n{types} atom types\n")
         for a, b, c in zip(scene.low, scene.high, "xyz"):
             file.write(f"{a:.9g} {b:.9g} {c}lo {c}hi\n")
-        file.write("\nMasses\n\n" + "".join(f"{k + 1} {density * scene.dx**3:.9g}\n" for k in range(types)) + "\nAtoms # sph\n\n")
+        file.write("\nMasses\n\n" + "".join(f"{k + 1} {density * scene.dx**3:.9g}\n" for k in range(types)) +
+                   "\nAtoms # sph\n\n")
         # id type rho e cv x y z
-        file.writelines(f"{n + 1} {kind[n]} {density:.9g} 0 1 {x[n, 0]:.9g} {x[n, 1]:.9g} {x[n, 2]:.9g}\n" for n in range(len(x)))
+        file.writelines(f"{n + 1} {kind[n]} {density:.9g} 0 1 {x[n, 0]:.9g} {x[n, 1]:.9g} {x[n, 2]:.9g}\n"
+                        for n in range(len(x)))
 
 
 def write_body(path, part, density):
@@ -260,7 +272,8 @@ def draw(path, scene):
         i, j = [m for m in range(3) if m != k]
         plane = scene.axes[k][np.argmin(np.abs(scene.axes[k] - middle[k]))]
         here = np.abs(x[:, k] - plane) < scene.dx / 4
-        axis.set(aspect="equal", xlim=(scene.low[i], scene.high[i]), ylim=(scene.low[j], scene.high[j]), xlabel="xyz"[i], ylabel="xyz"[j])
+        axis.set(aspect="equal", xlim=(scene.low[i], scene.high[i]), ylim=(scene.low[j], scene.high[j]),
+                 xlabel="xyz"[i], ylabel="xyz"[j])
         axis.figure.canvas.draw()
         points = axis.transData.transform([[0, 0], [scene.dx, 0]])[:, 0] @ [-1, 1] * 72 / figure.dpi
         axis.scatter(x[here, i], x[here, j], s=(0.85 * points)**2, c=colour[here], lw=0)
@@ -285,7 +298,8 @@ def main(argv=None):
     parser.add_argument("--density", type=float, default=1000.0)
     parser.add_argument("--out", type=pathlib.Path)
     given = parser.parse_args(argv)
-    for name, value in (("spacing", given.spacing), ("density", given.density), *(("tank", v) for v in given.tank or [])):
+    for name, value in (("spacing", given.spacing), ("density", given.density),
+                        *(("tank", v) for v in given.tank or [])):
         if not 0 < value < np.inf:
             raise Error(f"--{name} {value:g}: must be > 0")
     if not 1 <= given.h <= 4:
@@ -293,7 +307,8 @@ def main(argv=None):
     scene = Scene(given.spacing, given.h, given.tank, Part(given.vessel) if given.vessel else None, given.level,
                   [Part(words) for words in given.wall], [Part(words) for words in given.body], given.fit)
     print("\n".join(scene.said + ["{} particles: {} of water, {} of walls, {} of bodies; walls of {} layers".format(
-        (scene.type > 0).sum(), (scene.type == WATER).sum(), (scene.type == WALL).sum(), (scene.type >= BODY).sum(), scene.layers)]))
+        (scene.type > 0).sum(), (scene.type == WATER).sum(), (scene.type == WALL).sum(), (scene.type >= BODY).sum(),
+        scene.layers)]))
     if given.out:
         given.out.parent.mkdir(parents=True, exist_ok=True)
         write_data(f"{given.out}.data", scene, given.density)

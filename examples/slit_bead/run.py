@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""A bead in a slit between two walls (in.slit_bead): speed against height and width, beside Faxen's series and exact values.
+"""A bead in a slit between two walls (in.slit_bead): speed against height and width, beside Faxen's series and exact
+values.
 
     run.py --out DIR    results and the picture go to DIR (default: build/examples/slit_bead)
     run.py --update     also refreshes the picture in this folder
@@ -15,15 +16,16 @@ sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
 
-# Of a sphere of radius 1 over that in open fluid: distance of the walls, height, across them, along them (free to turn). Computed by this
-# project in another code, to the digits that are here.
+# Of a sphere of radius 1 over that in open fluid: distance of the walls, height, across them, along them (free to
+# turn). Computed by this project in another code, to the digits that are here.
 EXACT = [(2.2, 1.1, 0.047549, 0.253454), (2.5, 1.25, 0.113121, 0.331195), (4, 2.0, 0.358527, 0.541784),
          (10, 2.5, 0.564226, 0.744783), (10, 5.0, 0.715889, 0.802444)]
 WIDTHS = [2.2, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0]
 
 
 def faxen(H, quarter=False):
-    """Speed along two walls at a distance H of a sphere of radius 1, in the middle, or at a quarter of it (Faxen 1922)"""
+    """Speed along two walls at a distance H of a sphere of radius 1, in the middle, or at a quarter of it (Faxen
+    1922)"""
     if quarter:
         s = 4 / H
         return 1 - 0.6526 * s + 0.1475 * s**3 - 0.131 * s**4 - 0.0644 * s**5
@@ -32,7 +34,8 @@ def faxen(H, quarter=False):
 
 
 def speed(out, H, z, d=0, **more):
-    """Along the force, component d; along the walls the mean of both flows, which differ from a lone bead by as much each way"""
+    """Along the force, component d; along the walls the mean of both flows, which differ from a lone bead by as much
+    each way"""
     force, v = " ".join("1" if k == d else "0" for k in range(3)), []
     for flow in ("pressure", "flux") if d == 0 else ("pressure",):
         finished("slit_bead", ["lmp", "-in", str(HERE / "in.slit_bead"), "-log", "log.bead"] + values(
@@ -51,18 +54,21 @@ def draw(middle, heights, images, path):
         exact = [(row[0], row[3 if d == 0 else 2]) for row in EXACT if row[1] == row[0] / 2]
         left.plot(*np.transpose(exact), "kx", ms=9, label="exact" if d == 0 else None)
     left.plot(WIDTHS, images, "s", color="C3", mfc="none", label="across, one point")
-    left.set(xscale="log", xlabel="distance of the walls / radius", ylabel="speed over that in open fluid", ylim=(0, 1), title="a bead in the middle of a slit")
+    left.set(xscale="log", xlabel="distance of the walls / radius", ylabel="speed over that in open fluid", ylim=(0, 1),
+             title="a bead in the middle of a slit")
     left.set_xticks(WIDTHS, [f"{w:g}" for w in WIDTHS])
     left.legend(frameon=False)
     z, along, across = np.transpose(heights)
     right.plot(along, z, "o-", color="C0", label="along")
     right.plot(across, z, "o-", color="C1", label="across")
     right.plot([row[3] for row in EXACT if row[0] == 10], [row[1] for row in EXACT if row[0] == 10], "kx", ms=9)
-    right.plot([row[2] for row in EXACT if row[0] == 10], [row[1] for row in EXACT if row[0] == 10], "kx", ms=9, label="exact")
+    right.plot([row[2] for row in EXACT if row[0] == 10], [row[1] for row in EXACT if row[0] == 10], "kx", ms=9,
+               label="exact")
     right.plot([faxen(10), faxen(10, True), faxen(10, True)], [5, 2.5, 7.5], "k+", ms=11, label="Faxen's series")
     right.axhline(0, color="k", lw=2)
     right.axhline(10, color="k", lw=2)
-    right.set(xlabel="speed over that in open fluid", ylabel="height / radius", xlim=(0, 1), title="walls 10 radii apart")
+    right.set(xlabel="speed over that in open fluid", ylabel="height / radius", xlim=(0, 1),
+              title="walls 10 radii apart")
     right.legend(frameon=False, loc="center left")
     save(figure, path)
 

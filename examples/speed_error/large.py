@@ -1,4 +1,5 @@
-"""What Ewald sums are for: scenes of 10^4 spheres in a periodic box and 10^5 in an open one, their settings, what must hold."""
+"""What Ewald sums are for: scenes of 10^4 spheres in a periodic box and 10^5 in an open one, their settings, what must
+hold."""
 from runs import np
 
 EXACT = "cut_off_distance inf far_field ewald"
@@ -22,7 +23,8 @@ def options(pairs):
             yield "tolerance", f"{solver} {tolerance}", False
         else:
             yield "far_field_tolerance", f"{solver} {tolerance} far_field_tolerance {far}", False
-    for family, words in ("precondition", "precondition none"), ("warm_start no", "warm_start no"), ("update_every", "update_every 5"):
+    for family, words in ("precondition", "precondition none"), ("warm_start no",
+                                                                 "warm_start no"), ("update_every", "update_every 5"):
         yield family, f"{solver} 1e-3 {words}", False
 
 
@@ -43,7 +45,8 @@ def check(c, name, points, wanted):
     error = {p[2].partition("relative_tolerance ")[2]: p[0] for p in points}
     for tolerance in ("1e-2", "1e-3", "1e-4"):
         c.below(f"{name}: error over relative_tolerance {tolerance}", error[tolerance] / float(tolerance), 8)
-    c.within(f"{name}: error of far_field_tolerance auto over that of 1e-6", error["1e-3"] / error["1e-3 far_field_tolerance 1e-6"],
+    c.within(f"{name}: error of far_field_tolerance auto over that of 1e-6",
+             error["1e-3"] / error["1e-3 far_field_tolerance 1e-6"],
              0.5, 3.0)
     c.below(f"{name}: error of far_field_tolerance auto over that of 1e-1",
             error["1e-3"] / error["1e-3 far_field_tolerance 1e-1"], 0.2)

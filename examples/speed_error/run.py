@@ -3,17 +3,18 @@
 
     run.py [--data FILE | --large] [--quick] [--error 1e-2] [--ranks 2] [--out FOLDER] [--screening] [--update]
 
-Scenes are built in, or one is read from a data file of atom_style hybrid sphere bond. Every setting follows the same path of
-the spheres (their velocities are given, the force is not applied), so all forces can be compared at the same step. Prints a
-table for each scene, draws the Pareto fronts (speed_error.png in FOLDER, default build/examples/speed_error), names the
-cheapest setting below the wanted error, and runs that one on more ranks.
+Scenes are built in, or one is read from a data file of atom_style hybrid sphere bond. Every setting follows the same
+path of the spheres (their velocities are given, the force is not applied), so all forces can be compared at the same
+step. Prints a table for each scene, draws the Pareto fronts (speed_error.png in FOLDER, default
+build/examples/speed_error), names the cheapest setting below the wanted error, and runs that one on more ranks.
     --quick       smaller scenes, fewer settings
     --large       only what Ewald sums are for: 10^4 spheres in a periodic box, 10^5 in an open one (large.png)
     --ranks       of the last run, as many as there are cores up to 4; 1: none
     --screening   only the table of what a taper leaves of the drag
     --update      the table, speed_error.txt or large.txt, and the picture go to this folder as well
 
-Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed; with --data there is none.
+Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed; with --data there is
+none.
 """
 import argparse
 import os
@@ -132,7 +133,8 @@ def settings(exact, has_clumps, rigid, n, quick):
 
 def write_data(path, x, a, v, molecule, side=None):
     """In the periodic box from 0 to side, or with room around them"""
-    lo, hi = (np.zeros(3), np.full(3, side)) if side else (x.min(axis=0) - 10.0 * a.max(), x.max(axis=0) + 10.0 * a.max())
+    lo, hi = (np.zeros(3), np.full(3, side)) if side else (x.min(axis=0) - 10.0 * a.max(),
+                                                           x.max(axis=0) + 10.0 * a.max())
     with open(path, "w") as out:
         out.write(f"spheres\n\n{len(x)} atoms\n0 bonds\n1 atom types\n1 bond types\n\n")
         for d, c in enumerate("xyz"):
@@ -146,8 +148,8 @@ def write_data(path, x, a, v, molecule, side=None):
 
 
 class Scene:
-    """A data file, and what a rank cannot tell from its own spheres: the time step in which they move by MOVE radii; whether they
-    are at rest, so that they fall; how far ghosts must reach for a clump to be seen whole."""
+    """A data file, and what a rank cannot tell from its own spheres: the time step in which they move by MOVE radii;
+    whether they are at rest, so that they fall; how far ghosts must reach for a clump to be seen whole."""
 
     def __init__(self, data, dt=0.0, rest=False, ghosts=0.0, boundary="f f f"):
         self.data, self.dt, self.rest, self.ghosts, self.boundary = data, dt, rest, ghosts, boundary
@@ -175,11 +177,13 @@ class Scene:
         return lmp
 
     def words(self):
-        return [str(self.data), repr(float(self.dt)), "rest" if self.rest else "moving", repr(float(self.ghosts)), self.boundary]
+        return [str(self.data), repr(float(self.dt)), "rest" if self.rest else "moving", repr(float(self.ghosts)),
+                self.boundary]
 
 
 class Answer:
-    """Forces, total drag and dissipation at the last but one step, CPU time per step; refused: the error of LAMMPS instead."""
+    """Forces, total drag and dissipation at the last but one step, CPU time per step; refused: the error of LAMMPS
+    instead."""
 
     def __init__(self, parts):
         self.refused = next((part["refused"] for part in parts if part["refused"]), None)
@@ -194,7 +198,8 @@ class Answer:
 
     def errors(self, reference):
         force = np.linalg.norm(self.F - reference.F) / np.linalg.norm(reference.F)
-        drag = abs(reference.drag / self.drag - 1.0) if self.drag else 0.0       # of the velocity that a given weight brings
+        # of the velocity that a given weight brings
+        drag = abs(reference.drag / self.drag - 1.0) if self.drag else 0.0
         return force, drag, abs(self.dissipation / reference.dissipation - 1.0)
 
 
@@ -204,7 +209,8 @@ def run(scene, words, steps, end=lammps.close):
     try:
         for line in [f"pair_style stokes_dynamics visc {VISC} max_iter 1000 {words}", "pair_coeff * *",
                      "fix drag all stokes_dynamics apply no", "fix move all nve", f"timestep {scene.dt:.17g}",
-                     "thermo 1000000"] + [f"comm_modify cutoff {scene.ghosts:.17g}"] * ("clumps_only" in words) + ["run 0 post no"]:
+                     "thermo 1000000"] + [f"comm_modify cutoff {scene.ghosts:.17g}"] * ("clumps_only" in words) + [
+                         "run 0 post no"]:
             lmp.command(line)
         began = time.process_time()
         lmp.command(f"run {steps - 1} pre no post no")
@@ -230,7 +236,8 @@ def solve(scene, words, steps, ranks=1):
     with tempfile.TemporaryDirectory() as folder:
         command = ["mpirun", "-np", str(ranks), sys.executable, __file__,
                    "--rank-of", folder, words, str(steps), *scene.words()]
-        # The copy that python made of its environment at the start: without what MPI has put there for this process since.
+        # The copy that python made of its environment at the start: without what MPI has put there for this process
+        # since.
         ended = subprocess.run(command, env=dict(os.environ), capture_output=True, text=True)
         if ended.returncode:
             sys.exit(f"run.py: {' '.join(command)}:\n{ended.stdout}{ended.stderr}")
@@ -241,7 +248,8 @@ def solve(scene, words, steps, ranks=1):
 def rank_of(folder, words, steps, data, dt, rest, ghosts, boundary):
     """One rank of solve()."""
     part = run(Scene(data, float(dt), rest == "rest", float(ghosts), boundary), words, int(steps), lammps.finalize)
-    me = next(os.environ[name] for name in ("OMPI_COMM_WORLD_RANK", "PMI_RANK") if name in os.environ)     # Open MPI, MPICH
+    # Open MPI, MPICH
+    me = next(os.environ[name] for name in ("OMPI_COMM_WORLD_RANK", "PMI_RANK") if name in os.environ)
     np.savez(pathlib.Path(folder) / me, **part)
 
 
@@ -266,7 +274,8 @@ def front(points):
     return kept
 
 
-def measure(say, name, data, exact, steps, options, wanted, ranks, boundary="f f f", reference_words="relative_tolerance 1e-10"):
+def measure(say, name, data, exact, steps, options, wanted, ranks, boundary="f f f",
+            reference_words="relative_tolerance 1e-10"):
     scene = Scene(data, boundary=boundary).look()
     # Solved at the beginning and at the step where forces are compared.
     reference = solve(scene, f"{exact} algorithm 2 {reference_words} update_every {steps - 1}", steps)
@@ -284,7 +293,8 @@ def measure(say, name, data, exact, steps, options, wanted, ranks, boundary="f f
             return
         errors = answer.errors(reference)
         say("  {:8.3f} {:8.1e} {:8.1e} {:8.1e} {:4.0f}   {}".format(
-            1e3 * answer.time, *errors, answer.iterations, words + (f" ({on} ranks)" if on > 1 else " *" if other else "")))
+            1e3 * answer.time, *errors, answer.iterations,
+            words + (f" ({on} ranks)" if on > 1 else " *" if other else "")))
         points.append((max(errors), 1e3 * answer.time, words, family, other))
 
     for option in options:
@@ -303,7 +313,8 @@ def measure(say, name, data, exact, steps, options, wanted, ranks, boundary="f f
 def draw(path, results, wanted):
     columns = min(3, len(results) + 1)      # the last panel is the legend
     rows = -(-(len(results) + 1) // columns)
-    figure, axes = plt.subplots(rows, columns, figsize=(5.2 * columns, 4.4 * rows), squeeze=False, constrained_layout=True)
+    figure, axes = plt.subplots(rows, columns, figsize=(5.2 * columns, 4.4 * rows), squeeze=False,
+                                constrained_layout=True)
     seen = {}
     for axis, (name, points, _) in zip(axes.flat, results):
         for error, ms, _, family, other in points:
@@ -408,7 +419,8 @@ def main():
         return
     options = argparse.ArgumentParser(description="Time per step against error, for many settings of stokes_dynamics.")
     options.add_argument("--data", help="data file of atom_style hybrid sphere bond, units lj; all at rest: they fall")
-    options.add_argument("--clumps", action="store_true", help="with --data: the clumps are rigid and do not see each other")
+    options.add_argument("--clumps", action="store_true",
+                         help="with --data: the clumps are rigid and do not see each other")
     options.add_argument("--quick", action="store_true")
     options.add_argument("--large", action="store_true")
     options.add_argument("--error", type=float, default=1e-2)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Seconds against error of pair_style sph/artVisc/tensCorr: the plain scheme, delta, shift and correction in four flows of
-../sph_order (flows.py), each at several resolutions. A table and a picture. After: . build/env.sh
+"""Seconds against error of pair_style sph/artVisc/tensCorr: the plain scheme, delta, shift and correction in four flows
+of ../sph_order (flows.py), each at several resolutions. A table and a picture. After: . build/env.sh
 
     sph.py [--quick] [--update]        --quick: the coarse ones; all of them take three minutes
 
@@ -15,18 +15,22 @@ import flows  # noqa: E402
 import sph_runs as S  # noqa: E402
 
 DELTA = {"density": "delta 0.1"}
-OPTIONS = {"plain": {}, "delta": DELTA, "shift": dict(DELTA, pair="shift yes"), "correction": dict(DELTA, pair="correction yes")}
-# The cubic spline, which shift refuses, is where a channel needs correction: with Wendland's kernel, h = 2 spacings, all are alike.
+OPTIONS = {"plain": {}, "delta": DELTA, "shift": dict(DELTA, pair="shift yes"),
+           "correction": dict(DELTA, pair="correction yes")}
+# The cubic spline, which shift refuses, is where a channel needs correction: with Wendland's kernel, h = 2 spacings,
+# all are alike.
 SPLINE = {"kernel": "cubicspline", "hdx": 1.3}
 COLOR = {"plain": "C7", "delta": "C0", "shift": "C1", "correction": "C3"}
 # A free surface has no correction.
 FLOWS = [
     ("gresho", "Gresho's vortex: mean error of the velocity", (25, 50, 100), list(OPTIONS), lambda got, n: got["L1"]),
-    ("poiseuille", "Poiseuille, cubic spline (shift: Wendland): largest error", (10, 20, 40), list(OPTIONS), lambda got, n: got["error"]),
+    ("poiseuille", "Poiseuille, cubic spline (shift: Wendland): largest error", (10, 20, 40), list(OPTIONS),
+     lambda got, n: got["error"]),
     ("tank", "still tank, jittered, 10^4 steps: largest speed / sqrt(gH)", (10, 20), ["plain", "delta", "shift"],
      lambda got, n: got["speed"]),
-    ("dam_break", "dam break: energy gained, particles in walls or lost, shares", (10, 20, 30), ["plain", "delta", "shift"],
-     lambda got, n: max(got["energy"], 0.0) + (got["in walls"] + got["lost"]) / (2 * n * n)),
+    ("dam_break", "dam break: energy gained, particles in walls or lost, shares", (10, 20, 30),
+     ["plain", "delta", "shift"], lambda got, n: max(got["energy"], 0.0) + (got["in walls"] + got["lost"]) /
+     (2 * n * n)),
 ]
 
 
@@ -52,9 +56,11 @@ def table(rows):
              "|---|---|" + "---|" * len(OPTIONS)]
     for name, _, sizes, _, _ in FLOWS:
         for n in sizes:
-            cells = {o: "%.3g, %.2g" % (e, t) if e == e else "blown up" for flow, o, m, e, t in rows if (flow, m) == (name, n)}
+            cells = {o: "%.3g, %.2g" % (e, t) if e == e else "blown up" for flow, o, m, e,
+                     t in rows if (flow, m) == (name, n)}
             if cells:
-                lines.append("| %s | %d | %s |" % (name.replace("_", " "), n, " | ".join(cells.get(o, "") for o in OPTIONS)))
+                lines.append("| %s | %d | %s |" % (name.replace("_", " "), n,
+                                                   " | ".join(cells.get(o, "") for o in OPTIONS)))
     return "\n".join(lines) + "\n"
 
 
@@ -73,10 +79,12 @@ def picture(rows, path):
 
 def check(c, rows):
     error = {(name, option, n): e for name, option, n, e, _ in rows}
-    for name, best, rival, limit in (("gresho", "correction", "plain", 0.05), ("poiseuille", "correction", "plain", 0.2),
+    for name, best, rival, limit in (("gresho", "correction", "plain", 0.05),
+                                     ("poiseuille", "correction", "plain", 0.2),
                                      ("tank", "shift", "delta", 0.3)):
         n = max(n for flow, o, n in error if flow == name)
-        c.below("%s, n = %d: error of %s over %s" % (name, n, best, rival), error[name, best, n] / error[name, rival, n],
+        c.below("%s, n = %d: error of %s over %s" % (name, n, best, rival),
+                error[name, best, n] / error[name, rival, n],
                 1.0 if S.QUICK else limit)
 
 

@@ -45,7 +45,8 @@ def draw(pressed, exact_gap, passed, exact, target):
         t, x, _ = passed[tag]
         r = x[:, 1] - x[:, 0]
         right.plot(r[:, 0], r[:, 2], "o", ms=3.5, color=colour, label=label)
-    left.set(xlabel="time / (6 pi eta a^2 / F)", ylabel="gap / radius", title="Two spheres pressed together", ylim=(1e-5, 1.5))
+    left.set(xlabel="time / (6 pi eta a^2 / F)", ylabel="gap / radius", title="Two spheres pressed together",
+             ylim=(1e-5, 1.5))
     left.legend()
     angle = np.linspace(-np.pi / 2, np.pi / 2, 200)
     right.fill_betweenx(2 * np.sin(angle), 0 * angle, 2 * np.cos(angle), color="0.92", lw=0)
@@ -87,7 +88,8 @@ def main():
     c = Checks()
     c.below("drag of approach at a gap of 1e-4 against its law near contact, 1/(2 gap) + 9/20 ln(1/gap) + 1.346",
             abs(approach_drag(1e-4) / (5000 + 0.45 * np.log(1e4) + 1.346) - 1), 1e-4)
-    c.below("pressed together: largest relative error of the gap, down to 1e-5 radii", np.max(np.abs(gap / wanted - 1)), 2e-3)
+    c.below("pressed together: largest relative error of the gap, down to 1e-5 radii", np.max(np.abs(gap / wanted - 1)),
+            2e-3)
     free = pressed["no"][0][np.argmax(pressed["no"][2] < 0)]
     c.within("without lubrication they touch, and go on, at time", free, 1.0, 1.2)
     touch = rough[0][np.argmax(rough[2] < 0)]
@@ -98,7 +100,8 @@ def main():
     c.below("places of both over 25 radii of fall, off the exact ones by, in radii", off(passed["yes"]), 0.05)
     c.below("the same with lubrication_range 8", off(far), 0.003)
     c.within("without lubrication: smallest gap, an overlap", passed["no"][2].min(), -0.75, -0.65)
-    c.near("Stokes flow has no direction of time: sideways distance behind over that before", mirrored(passed["yes"]) / 0.8, 1.0, 5e-4)
+    c.near("Stokes flow has no direction of time: sideways distance behind over that before",
+           mirrored(passed["yes"]) / 0.8, 1.0, 5e-4)
     if given.update:
         shutil.copy(out / "squeeze.png", HERE)
         shutil.copy(out / "log.pass_yes", HERE / "log.squeeze.1")

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The flow around falling spheres, in a suspension and around a sphere in shear, from the files of fix stokes_dynamics/field.
+"""The flow around falling spheres, in a suspension and around a sphere in shear, from the files of fix
+stokes_dynamics/field.
 
     run.py --out DIR    results and the picture go to DIR (default: build/examples/streamlines)
     run.py --update     also refreshes the picture in this folder
@@ -65,10 +66,12 @@ def main():
 
     inside = three["inside"][:, 0, :] == 1
     middle = three["velocity"][np.abs(three.axis(2)).argmin(), 0, np.abs(three.axis(0)).argmin()]
-    c.near("three spheres: velocity of the point at the middle one over that of the sphere", middle[2] / spheres[1, 7], 1.0, 1e-3)
+    c.near("three spheres: velocity of the point at the middle one over that of the sphere", middle[2] / spheres[1, 7],
+           1.0, 1e-3)
     c.within("share of the plane that is sphere, over three circles", inside.mean() * 24 * 16 / (3 * np.pi), 0.97, 1.03)
     far, _ = lammps(out, "three", "1 1 2", "0 0 50", "0 0 1000", "_far")
-    c.near("far above: velocity over that of three point forces, 1000 radii away", far["velocity"][1, 0, 0, 2] / (-3 * 1.5 / 1000), 1.0, 3e-4)
+    c.near("far above: velocity over that of three point forces, 1000 radii away",
+           far["velocity"][1, 0, 0, 2] / (-3 * 1.5 / 1000), 1.0, 3e-4)
 
     x = shear.points()
     outside = (shear["inside"] == 0) & (np.linalg.norm(x, axis=-1) > 1.3)
@@ -76,8 +79,10 @@ def main():
         exact = shear_exact(x)
     error = shear["velocity"] - exact
     error[..., 0] -= 0.5 * x[..., 2]
-    c.near("shear: spin of the sphere over half the vorticity", shear["velocity"][45, 0, 40, 0] / (0.25 * shear.axis(2)[45]), 1.0, 1e-3)
-    c.below("shear: largest error of the flow from 1.3 radii on, in speeds of the surface", np.abs(error[outside]).max() / 0.25, 0.05)
+    c.near("shear: spin of the sphere over half the vorticity",
+           shear["velocity"][45, 0, 40, 0] / (0.25 * shear.axis(2)[45]), 1.0, 1e-3)
+    c.below("shear: largest error of the flow from 1.3 radii on, in speeds of the surface",
+            np.abs(error[outside]).max() / 0.25, 0.05)
 
     coarse, _ = lammps(out, "three", "21 1 21", "-4 0 2", "4 0 8", "_coarse")
     fine, _ = lammps(out, "three", "41 1 41", "-4 0 2", "4 0 8", "_fine")
@@ -87,7 +92,8 @@ def main():
         """Error of linear interpolation half way along x"""
         rows = a["velocity"][:, 0]
         return np.abs(0.5 * (rows[:, 1:] + rows[:, :-1]) - b["velocity"][::2, 0, 1::2]).max()
-    c.near("between the points: order of the error of linear interpolation", np.log2(between(coarse, fine) / between(fine, finest)), 2.0, 0.2)
+    c.near("between the points: order of the error of linear interpolation",
+           np.log2(between(coarse, fine) / between(fine, finest)), 2.0, 0.2)
     if given.update:
         shutil.copy(out / "streamlines.png", HERE)
     sys.exit(c.finish())

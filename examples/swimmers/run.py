@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Bodies that swim or are kept in motion: a bacterium driven by opposite torques (in.bacterium), pinned rotors (in.rotors), and plates of
-held spheres as moving walls (in.plates).
+"""Bodies that swim or are kept in motion: a bacterium driven by opposite torques (in.bacterium), pinned rotors
+(in.rotors), and plates of held spheres as moving walls (in.plates).
 
     run.py --out DIR     results and the picture go to DIR (default: build/examples/swimmers)
     run.py --quick       shorter runs, without the picture
@@ -29,7 +29,7 @@ def run(out, script, name, **variables):
     return np.array([rows for _, rows in dumped(out / f"{name}.frames")])
 
 
-# --- bacterium --------------------------------------------------------------------------------------------------------------
+# --- bacterium --------------------------------------------------------------------------------------------------------
 
 def bacterium():
     """Centres, radii; the first four spheres are the head"""
@@ -42,13 +42,15 @@ def bacterium():
 def write_bug(path, x, a, one=False):
     """one: head and tail are one clump"""
     box = "".join(f"-60 60 {c}lo {c}hi\n" for c in "xyz")
-    rows = "".join("{} {} {:.15g} {:.15g} {:.15g} {:.15g} 1 {}\n".format(i + 1, 1 + (i > 3), *p, 2 * r, 1 if one else 1 + (i > 3))
+    rows = "".join("{} {} {:.15g} {:.15g} {:.15g} {:.15g} 1 {}\n".format(i + 1, 1 + (i > 3), *p, 2 * r,
+                                                                         1 if one else 1 + (i > 3))
                    for i, (p, r) in enumerate(zip(x, a)))
     path.write_text(f"bug\n\n{len(x)} atoms\n2 atom types\n{box}\nAtoms # hybrid\n\n{rows}")
 
 
 def mobility(x, a):
-    """[6n, 6n] of spheres that do not overlap, forces and torques, viscosity 1 (Rotne & Prager 1969; Zuk et al. 2014)"""
+    """[6n, 6n] of spheres that do not overlap, forces and torques, viscosity 1 (Rotne & Prager 1969; Zuk et al.
+    2014)"""
     n = len(x)
     M = np.zeros((n, 2, 3, n, 2, 3))
     for i in range(n):
@@ -66,7 +68,8 @@ def mobility(x, a):
 
 
 def dense(x, a, torque, gap):
-    """Velocities of all spheres: two rigid bodies, opposite torques, and the spring along x between their centres of mass"""
+    """Velocities of all spheres: two rigid bodies, opposite torques, and the spring along x between their centres of
+    mass"""
     parts, m = (np.arange(4), np.arange(4, len(x))), a**3
     centre = [np.average(x[p], axis=0, weights=m[p]) for p in parts]
     K = np.zeros((6 * len(x), 12))
@@ -87,7 +90,8 @@ def swim(out, c, quick):
     write_bug(out / "bug.data", x, a)
     steps, speed = (200, 8000)[not quick], {}
     for name, torque in (("forwards", TORQUE), ("backwards", -TORQUE)):
-        rows = run(out, "bacterium", name, bug=out / "bug.data", torque=torque, gap=f"{gap:.15g}", steps=steps, every=steps // 20)
+        rows = run(out, "bacterium", name, bug=out / "bug.data", torque=torque, gap=f"{gap:.15g}", steps=steps,
+                   every=steps // 20)
         v = np.array([frame[:, 5:8] for frame in rows])
         right = np.array([dense(frame[:, 2:5], a, torque, gap) for frame in rows])
         c.below(f"bacterium, {name}: velocities from a dense matrix, all the way, over the largest",
@@ -97,14 +101,16 @@ def swim(out, c, quick):
         bug = rows
     print(f"  bacterium: speed {speed['forwards']:.5f} and {speed['backwards']:.5f}")
     c.below("bacterium: the other sense of the motor swims the other way; sum over difference of speeds",
-            abs(speed["forwards"] + speed["backwards"]) / abs(speed["forwards"] - speed["backwards"]), 0.02 if not quick else 0.2)
+            abs(speed["forwards"] + speed["backwards"]) / abs(speed["forwards"] - speed["backwards"]),
+            0.02 if not quick else 0.2)
     write_bug(out / "one.data", x, a, one=True)
     rows = run(out, "bacterium", "one", bug=out / "one.data", gap=f"{gap:.15g}", steps=20, every=20)
-    c.below("head and tail in one rigid clump: forces inside it cancel, it rests", np.abs(rows[-1][:, 5:8]).max(), 1e-12)
+    c.below("head and tail in one rigid clump: forces inside it cancel, it rests", np.abs(rows[-1][:, 5:8]).max(),
+            1e-12)
     return bug, a
 
 
-# --- rotors and plates ------------------------------------------------------------------------------------------------------
+# --- rotors and plates ------------------------------------------------------------------------------------------------
 
 def rotors(out, c):
     rows = run(out, "rotors", "rotors")[-1]
@@ -118,7 +124,8 @@ def rotors(out, c):
     c.below("rotors and a free sphere: velocities from a dense matrix", np.abs(v - right).max(), 1e-7)
     s = np.linalg.norm(x[1] - x[0])
     between = 4 / 3 * (1 - (1 + 2 / (3 * s**2)) * 3 / 4 / s)      # of opposite forces across the line of the two
-    c.near("rotors: force on a pin, against that by the flow of two rotlets", abs(f[0, 1]), 1 / s**2 / between, 0.02 / s**2 / between)
+    c.near("rotors: force on a pin, against that by the flow of two rotlets", abs(f[0, 1]), 1 / s**2 / between,
+           0.02 / s**2 / between)
     c.below("rotors: they stay where they are pinned", np.abs(v[:2]).max(), 1e-6)
 
 
@@ -129,7 +136,8 @@ def plates(out, c):
     heights = np.array([2.5, 3.2, 4.0, 4.8, 5.5])
     free = np.column_stack([[2, 6, 5, 8, 3], [2, 4, 5, 8, 7], heights])
     rows = [(1, 2, p) for p in flat] + [(2, 2, p + (0, 0, HIGH / 2)) for p in flat] + [(3, 0.6, p) for p in free]
-    text = "".join("{} {} {} 1 {:.15g} {:.15g} {:.15g}\n".format(i + 1, kind, size, *p) for i, (kind, size, p) in enumerate(rows))
+    text = "".join("{} {} {} 1 {:.15g} {:.15g} {:.15g}\n".format(i + 1, kind, size, *p)
+                   for i, (kind, size, p) in enumerate(rows))
     (out / "plates.data").write_text(f"plates\n\n{len(rows)} atoms\n3 atom types\n0 {edge} xlo xhi\n0 {edge} ylo yhi\n"
                                      f"{-HIGH / 4} {3 * HIGH / 4} zlo zhi\n\nAtoms\n\n{text}")
     rows = run(out, "plates", "plates", plates=out / "plates.data")[-1]
@@ -142,7 +150,8 @@ def plates(out, c):
     c.near("plates: stress over viscosity times rate of shear of the free spheres", stress[0] / rate, 1, 0.01)
     c.below("plates: sum of the forces on both, over that on one", abs(sum(stress)) / abs(stress[0]), 1e-3)
     c.near("plates: in the middle half of the speed", v[kind == 3][2], 0.5, 1e-3)
-    c.below("plates: free spheres from a straight line, over the speed", np.abs(v[kind == 3] - start - rate * heights).max(), 1e-3)
+    c.below("plates: free spheres from a straight line, over the speed",
+            np.abs(v[kind == 3] - start - rate * heights).max(), 1e-3)
     return heights, v[kind == 3], start, rate
 
 
@@ -152,18 +161,19 @@ def draw(bug, a, profile, path):
     for k, shade in ((0, 0.25), (len(bug) // 2, 0.5), (len(bug) - 1, 1.0)):
         x = bug[k][:, 2:5]
         for i in np.argsort(-x[:, 1]):
-            panels[0].add_patch(plt.Circle((x[i, 0], x[i, 2] - 5 * (k > 0) - 5 * (k == len(bug) - 1)), a[i], alpha=shade,
-                                           fc="#d95f02" if i < 4 else "#1b9e77", ec="0.2", lw=0.5))
+            panels[0].add_patch(plt.Circle((x[i, 0], x[i, 2] - 5 * (k > 0) - 5 * (k == len(bug) - 1)), a[i],
+                                           alpha=shade, fc="#d95f02" if i < 4 else "#1b9e77", ec="0.2", lw=0.5))
     every = np.array([frame[:, 2] for frame in bug])
-    panels[0].set(xlim=(every.min() - 1.5, every.max() + 1.5), ylim=(-12.6, 2.6), yticks=[], xlabel="x, in radii of the head's spheres",
-                  title="a bacterium swims: begin, middle, end of the run")
+    panels[0].set(xlim=(every.min() - 1.5, every.max() + 1.5), ylim=(-12.6, 2.6), yticks=[],
+                  xlabel="x, in radii of the head's spheres", title="a bacterium swims: begin, middle, end of the run")
     panels[0].set_aspect("equal")
     z, v, start, rate = profile
     for height in (0, HIGH / 2):
         panels[1].axhspan(height - 1, height + 1, color="0.85")
     panels[1].plot([0, 1], (np.array([0, 1]) - start) / rate, "k-", lw=1, label="straight line")
     panels[1].plot(v, z, "o", color="C1", label="free spheres")
-    panels[1].set(xlabel="velocity over that of the upper plate", ylabel="height", title="between plates of held spheres")
+    panels[1].set(xlabel="velocity over that of the upper plate", ylabel="height",
+                  title="between plates of held spheres")
     panels[1].legend(frameon=False)
     save(figure, path)
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Runs taylor_green at three resolutions; table and picture: amplitude of the vortices against the exact decay. After: . build/env.sh"""
+"""Runs taylor_green at three resolutions; table and picture: amplitude of the vortices against the exact decay. After:
+. build/env.sh"""
 import os
 import sys
 
@@ -17,7 +18,8 @@ WANTED = {25: (2.35, None), 50: (0.47, 2.33), 100: (0.10, 2.24)}
 for n, ratio in ((25, 2.2),) if S.QUICK else ((25, 2.2), (50, 3.0), (100, 4.0)):
     out, t = S.lmp(folder, "taylor_green", n, n=n, ratio=ratio)
     error = np.abs(t["v_amplitude"] - t["v_exact"]).max()
-    table += "| %d x %d | %.1f | %.2f %% | %s |\n" % (n, n, ratio, 100 * error, "%.2f" % np.log2(last / error) if last else "")
+    table += "| %d x %d | %.1f | %.2f %% | %s |\n" % (n, n, ratio, 100 * error, "%.2f" % np.log2(last / error) if last
+                                                      else "")
     c.near("%d x %d: largest error of the amplitude in %%" % (n, n), 100 * error, WANTED[n][0], 0.05 * WANTED[n][0])
     if last:
         c.near("%d x %d: order" % (n, n), np.log2(last / error), WANTED[n][1], 0.1)

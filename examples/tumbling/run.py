@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Lets straight chains tumble in a shear flow with in.tumbling and compares the periods with Jeffery's and exact values.
+"""Lets straight chains tumble in a shear flow with in.tumbling and compares the periods with Jeffery's and exact
+values.
 
     run.py --out DIR    curves and the picture go to DIR (default: build/examples/tumbling)
     run.py --quick      two ranks for a twentieth of the way
@@ -17,8 +18,8 @@ sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from runs import np, plt, finished, need, options, TOP  # noqa: E402
 
-# Effective aspect ratios of chains of touching spheres in exact Stokes flow (Lamb's multipole solution, computed independently of
-# the plugin's code, 1e-8); the period is 2 pi (re + 1/re)/shear rate (Jeffery 1922; Bretherton 1962).
+# Effective aspect ratios of chains of touching spheres in exact Stokes flow (Lamb's multipole solution, computed
+# independently of the plugin's code, 1e-8); the period is 2 pi (re + 1/re)/shear rate (Jeffery 1922; Bretherton 1962).
 EXACT = {2: 1.981649, 5: 4.491020, 10: 8.289892}
 PERIOD_LIMIT = 0.005                # relative
 CURVE_LIMIT = 0.2                   # degrees, against the closed form with the measured period
@@ -35,7 +36,8 @@ def aspect_ratio(period):
 
 
 def jeffery(re, t, phi0):
-    """Angle of the axis from the gradient direction z towards the flow direction x, projected on their plane, at times t."""
+    """Angle of the axis from the gradient direction z towards the flow direction x, projected on their plane, at times
+    t."""
     tau = np.arctan2(np.sin(phi0) / re, np.cos(phi0)) + t * re / (re * re + 1)
     return phi0 + np.unwrap(np.arctan2(re * np.sin(tau), np.cos(tau))) - np.arctan2(re * np.sin(tau[0]), np.cos(tau[0]))
 
@@ -57,8 +59,8 @@ class Case:
 
     def run(self, out):
         curve, log = out / f"{self.tag}.curve", out / f"{self.tag}.log"
-        command = ["stdbuf", "-oL", "lmp", "-in", "in.tumbling", "-log", str(log), "-var", "n", str(self.n), "-var", "tilt",
-                   str(self.tilt), "-var", "shell", str(self.shell), "-var", "curve", str(curve),
+        command = ["stdbuf", "-oL", "lmp", "-in", "in.tumbling", "-log", str(log), "-var", "n", str(self.n), "-var",
+                   "tilt", str(self.tilt), "-var", "shell", str(self.shell), "-var", "curve", str(curve),
                    "-var", "turns", str(1.3 * self.part)]
         if self.images:
             command += ["-var", "image", str(out / self.tag)]
@@ -136,7 +138,8 @@ def check(done):
         if run.ranks == 2:
             alone = one[run.n, run.tilt, run.shell]
             _, here, there = np.intersect1d(run.t, alone.t, return_indices=True)
-            c.below(f"{run.label}: change of the axis against 1", np.abs(run.axis[here] - alone.axis[there]).max(), 1e-8)
+            c.below(f"{run.label}: change of the axis against 1", np.abs(run.axis[here] - alone.axis[there]).max(),
+                    1e-8)
         if run.part < 1.0:
             continue
         c.near(f"{run.label}: period", run.period, PERIODS[run.n, run.shell], 3e-4)
@@ -144,11 +147,13 @@ def check(done):
             limit = PERIOD_LIMIT if run.shell == 42 else 0.015
             c.near(f"{run.label}: period over the exact {period_of(EXACT[run.n]):.4f}", run.error + 1.0, 1.0, limit)
         if run.shell == 42:
-            c.below(f"{run.label}: degrees from Jeffery's closed form for its own aspect ratio {run.re:.4f}", run.deviation,
+            c.below(f"{run.label}: degrees from Jeffery's closed form for its own aspect ratio {run.re:.4f}",
+                    run.deviation,
                     CURVE_LIMIT)
         if run.tilt:
             c.below(f"{run.label}: degrees from its orbit", run.drift, CURVE_LIMIT)
-    c.near("chain of 5, shell 1: period over that of a dense solution of its model", one[5, 0, 1].period / 28.76868, 1.0, 1e-3)
+    c.near("chain of 5, shell 1: period over that of a dense solution of its model", one[5, 0, 1].period / 28.76868,
+           1.0, 1e-3)
     return c.finish()
 
 
@@ -161,13 +166,14 @@ def main():
 
     start = time.time()
     done = []
-    for case in (Case(2), Case(5, images=True), Case(10), Case(5, tilt=45), Case(5, ranks=2, part=0.05 if given.quick else 1.0),
+    for case in (Case(2), Case(5, images=True), Case(10), Case(5, tilt=45),
+                 Case(5, ranks=2, part=0.05 if given.quick else 1.0),
                  Case(5, shell=12), Case(5, shell=1)):
         done.append(case.run(out))
         if case.part < 1.0:
             continue
-        print(f"  {case.label}: period {case.period:.5f}, exact {period_of(EXACT[case.n]):.5f}, {100 * case.error:+.3f} %; "
-              f"effective aspect ratio {case.re:.5f}", flush=True)
+        print(f"  {case.label}: period {case.period:.5f}, exact {period_of(EXACT[case.n]):.5f}, "
+              f"{100 * case.error:+.3f} %; effective aspect ratio {case.re:.5f}", flush=True)
     draw(done, out, out / "tumbling.png")
     if given.update:
         shutil.copy(out / "tumbling.png", HERE)

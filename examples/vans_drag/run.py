@@ -31,7 +31,8 @@ def main():
         d, w = rows[:, 1], -rows[:, 2]
         speed[phi] = w
         error = np.abs(w / closed_form(d, float(phi)) - 1)
-        print(f"phi {phi}: terminal velocity {w.min():.5f} to {w.max():.5f} m/s, largest error against the closed form {error.max():.1e}")
+        print(f"phi {phi}: terminal velocity {w.min():.5f} to {w.max():.5f} m/s, largest error against the closed form "
+              f"{error.max():.1e}")
         c.below(f"phi {phi}: largest error of the terminal velocity", error.max(), 1e-11)
         left.loglog(d * 1e3, w, "o", ms=5, label=f"phi = {phi}")
         left.loglog(fine * 1e3, closed_form(fine, float(phi)), "k-", lw=1)
@@ -46,7 +47,8 @@ def main():
     right.loglog(v, 0.44 + 24.4 / v, "k-", lw=1, label="0.44 + 24.4/Re")
     Re = speed["0.0"] * d / 1e-6
     right.loglog(Re, 4 / 3 * 1.5 * 9.81 * d / speed["0.0"] ** 2, "o", ms=5, label="from the runs, phi = 0")
-    left.set(xlabel="grain diameter [mm]", ylabel="terminal velocity [m/s]", title="Glass in water at rest (lines: closed form)")
+    left.set(xlabel="grain diameter [mm]", ylabel="terminal velocity [m/s]",
+             title="Glass in water at rest (lines: closed form)")
     right.set(xlabel="Re", ylabel="drag coefficient", title="Drag coefficient")
     for axes in (left, right):
         axes.legend(frameon=False)

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Runs both flows on several meshes, prints their errors and draws fluid.png.     run.py [--ranks N] [--out DIR] [--update]
+"""Runs both flows on several meshes, prints their errors and draws fluid.png.
+
+    run.py [--ranks N] [--out DIR] [--update]
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed."""
 import os
@@ -26,7 +28,8 @@ def run(case, cells, given):
 
 
 def layer(z):
-    """The exact integral of the closure: (nu + (kappa z)^2 u') u' = u_star^2 (1 - z/H), without eddies where z u_star/nu < 11.3."""
+    """The exact integral of the closure: (nu + (kappa z)^2 u') u' = u_star^2 (1 - z/H), without eddies where z
+    u_star/nu < 11.3."""
     edge = 11.3 * NU / U_STAR
 
     def gradient(s):
@@ -37,7 +40,8 @@ def layer(z):
     middle = 0.5 * (s[1:] + s[:-1])
     u = np.concatenate([[0], np.cumsum((gradient(s[1:]) + 4 * gradient(middle) + gradient(s[:-1])) / 6 * np.diff(s))])
     below = np.minimum(z, edge)
-    return U_STAR ** 2 / NU * (below - below ** 2 / (2 * H)) + np.where(z > edge, np.interp(np.log(np.maximum(z, edge)), np.log(s), u), 0)
+    return (U_STAR ** 2 / NU * (below - below ** 2 / (2 * H)) +
+            np.where(z > edge, np.interp(np.log(np.maximum(z, edge)), np.log(s), u), 0))
 
 
 def main():
@@ -51,7 +55,8 @@ def main():
         dz, parabola = 1 / (cells - 1), 0.1 / 0.002 * z * (1 - z)
         discrete = parabola + 0.1 / 0.002 * dz ** 2 / 4
         worst.append(np.abs(u - parabola).max() / 12.5)
-        print(f"  {cells:6d} slices: to the parabola {worst[-1]:.2e}, to the discrete closed form {np.abs(u - discrete).max() / 12.5:.1e}")
+        print(f"  {cells:6d} slices: to the parabola {worst[-1]:.2e}, to the discrete closed form "
+              f"{np.abs(u - discrete).max() / 12.5:.1e}")
         c.below(f"Poiseuille, {cells} slices: to the discrete closed form", np.abs(u - discrete).max() / 12.5, 2e-12)
         c.near(f"Poiseuille, {cells} slices: to the parabola", worst[-1], PARABOLA[cells], 0.03 * PARABOLA[cells])
         if cells == 26:
@@ -68,7 +73,8 @@ def main():
         z, u = run("layer", cells, given)
         meshes.append(cells)
         worst.append(np.abs(u - layer(z)).max() / U_STAR)
-        print(f"  {cells:6d} slices, dz+ = {H / (cells - 1) * U_STAR / NU:.2f}: to the exact integral of the closure {worst[-1]:.2e}, surface {u[-1]:.4f} m/s")
+        print(f"  {cells:6d} slices, dz+ = {H / (cells - 1) * U_STAR / NU:.2f}: to the exact integral of the closure "
+              f"{worst[-1]:.2e}, surface {u[-1]:.4f} m/s")
     for found, wanted in zip(worst, LAYER):
         c.near("layer: to the exact integral of the closure", found, wanted, 0.03 * wanted)
     run("layer", 5001, given)
@@ -77,7 +83,8 @@ def main():
     right.semilogx(zp, layer(zp * NU / U_STAR) / U_STAR, "k-", lw=1, label="exact integral of the closure")
     right.semilogx(zp[zp > 11.3], np.log(zp[zp > 11.3] / 11.3) / KAPPA + 11.3, "r:", label="log law from 11.3")
     errors.loglog(11.3 / (k + 0.5) / 11.3 * 0.1, worst, "s-", label="turbulent layer (dz+/113)")
-    print("  orders:", ", ".join("%.2f" % (np.log(a / b) / np.log((m + 0.5) / (n + 0.5))) for a, b, n, m in zip(worst, worst[1:], k, k[1:])))
+    print("  orders:", ", ".join("%.2f" % (np.log(a / b) / np.log((m + 0.5) / (n + 0.5))) for a, b, n,
+                                 m in zip(worst, worst[1:], k, k[1:])))
     errors.loglog([2.5e-3, 0.1], [2e-6, 2e-6 * 1600], "k:", label="second order")
     left.set(xlabel="u [m/s]", ylabel="z [m]", title="Poiseuille flow")
     right.set(xlabel="z u*/nu", ylabel="u/u*", title="Turbulent layer on a slope of 0.05")

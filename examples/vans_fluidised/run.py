@@ -40,10 +40,12 @@ def main():
     # beads at rest, to first order: what they feel in shaken air, over their weight
     lifted = [drag(np.array([AIR, 0, 0]) + s * rng.standard_normal((400000, 3))).mean() / WEIGHT for s in (0.0, 2.0)]
     print(f"drag on a bead at rest over its weight: calm {lifted[0]:.4f}, shaken {lifted[1]:.4f}")
-    print(f"force of the air over weight: calm {calm[:, 5].mean() / WEIGHT:.4f}, shaken {shaken[:, 5].mean() / WEIGHT:.4f}")
+    print(f"force of the air over weight: calm {calm[:, 5].mean() / WEIGHT:.4f}, "
+          f"shaken {shaken[:, 5].mean() / WEIGHT:.4f}")
     print(f"mean height in diameters: calm {calm[:, 1].mean() / D:.3f}, shaken {shaken[:, 1].mean() / D:.2f}")
     for k, axis in enumerate("xyz"):
-        c.near(f"rms of the fluctuation along {axis}, m/s", np.sqrt(shaken[:, 2 + k].mean()), 2.0, 2.0 * 5 / np.sqrt(2 * n))
+        c.near(f"rms of the fluctuation along {axis}, m/s", np.sqrt(shaken[:, 2 + k].mean()), 2.0,
+               2.0 * 5 / np.sqrt(2 * n))
     # beads at rest feel drag and buoyancy
     c.near("calm: force of the air over weight", calm[:, 5].mean() / WEIGHT, lifted[0] + RHO / 2500, 1e-3)
     c.within("calm: mean height, diameters", calm[:, 1].mean() / D, 1.0, 2.2)

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Frey's three runs: transport rate and profiles beside the measured ones, frey.png.
-    run.py [--ranks N] [--seconds T] [--length L] [--beds N] [--deeper MM] [--wall F] [--felt centre|volume] [--out DIR] [--reuse DIR] [--update]
+    run.py [--ranks N] [--seconds T] [--length L] [--beds N] [--deeper MM] [--wall F] [--felt centre|volume] [--out DIR]
+    [--reuse DIR] [--update]
 
---beds: so many beds of each run, from other seeds; with two or more the errors are those between beds, with one those between its seconds.
---deeper: so many mm more water, --wall: this factor on the friction of the walls, both under the consistent rules, and then only what comes out.
-Needs lmp on the PATH (. build/env.sh). Ends with a line ok or MISSED for each figure of the README. --reuse reads results of an earlier run in DIR."""
+--beds: so many beds of each run, from other seeds; with two or more the errors are those between beds, with one those
+between its seconds. --deeper: so many mm more water, --wall: this factor on the friction of the walls, both under the
+consistent rules, and then only what comes out. Needs lmp on the PATH (. build/env.sh). Ends with a line ok or MISSED
+for each figure of the README. --reuse reads results of an earlier run in DIR."""
 import os
 import sys
 
@@ -34,9 +36,10 @@ def simulate(given, directory, run, rules, bed):
     deeper, wall, felt = (given.deeper, given.wall, given.felt) if rules == "consistent" else (0, 1, "centre")
     name = f"{run}.{rules}" + f".deeper{deeper:g}" * (deeper != 0) + f".wall{wall:g}" * (wall != 1) + f".{bed}"
     if not given.reuse:
-        lmp(HERE, given, directory, depth=depth + 1e-3 * deeper, layers=layers, name=name, rules=rules, wall=wall, felt=felt,
-            seconds=given.seconds, length=given.length, seed=4711 + bed)
-    return np.loadtxt(os.path.join(directory, f"series.{name}")), profiles(os.path.join(directory, f"profiles.{name}"), 0.5)
+        lmp(HERE, given, directory, depth=depth + 1e-3 * deeper, layers=layers, name=name, rules=rules, wall=wall,
+            felt=felt, seconds=given.seconds, length=given.length, seed=4711 + bed)
+    return np.loadtxt(os.path.join(directory, f"series.{name}")), profiles(os.path.join(directory, f"profiles.{name}"),
+                                                                           0.5)
 
 
 def second_half(series):
@@ -64,7 +67,8 @@ def distance(profile, points):
 
 
 def main():
-    given, c = options(__file__, __doc__, ranks=1, seconds=8.0, length=60, beds=1, deeper=0.0, wall=1.0, felt="centre", reuse=""), Checks()
+    given, c = options(__file__, __doc__, ranks=1, seconds=8.0, length=60, beds=1, deeper=0.0, wall=1.0, felt="centre",
+                       reuse=""), Checks()
     need("mpirun", "lmp")
     directory, points = given.reuse or given.out, measured_profiles()
     as_it_is = given.deeper == 0 and given.wall == 1
@@ -77,24 +81,28 @@ def main():
         for which, rules in enumerate(RULES):
             beds = [simulate(given, directory, run, rules, bed) for bed in range(given.beds)]
             all_series, profile = [series for series, _ in beds], np.mean([rows for _, rows in beds], axis=0)
-            table += [f"{run},{rules},{bed},{rows[:, 1].mean() / SCALE:.4f},{rows[:, 2].mean():.4f},{rows[:, 5].mean():.4f}"
+            table += [
+                f"{run},{rules},{bed},{rows[:, 1].mean() / SCALE:.4f},{rows[:, 2].mean():.4f},{rows[:, 5].mean():.4f}"
                       for bed, rows in enumerate(map(second_half, all_series))]
             q, spread = (value / SCALE for value in mean_and_error(all_series, 1))
             shields, surface = mean_and_error(all_series, 2)[0], mean_and_error(all_series, 5)[0]
             d_phi, d_v, shift = distance(profile, points[run])
-            print(f"run {run}, {rules:10s}: q* = {q:.4f} +- {spread:.4f}, measured {measured / SCALE:.4f}: ratio {q * SCALE / measured:.2f}; "
-                  f"Shields number {shields:.4f}, surface {surface:.3f} m/s; rms from the measured phi {d_phi:.3f}, v {d_v:.3f} m/s, bed shifted by {shift:.2f} d")
+            print(f"run {run}, {rules:10s}: q* = {q:.4f} +- {spread:.4f}, measured {measured / SCALE:.4f}: "
+                  f"ratio {q * SCALE / measured:.2f}; Shields number {shields:.4f}, surface {surface:.3f} m/s; "
+                  f"rms from the measured phi {d_phi:.3f}, v {d_v:.3f} m/s, bed shifted by {shift:.2f} d")
             if rules == "yade" or as_it_is:
                 c.near(f"run {run}, {rules}: q*", q, *FOUND[run, rules])
             c.below(f"run {run}, {rules}: rms distance from the measured phi", d_phi, 0.08)
-            axes[0].bar(k + 0.27 * which, q, 0.25, yerr=spread, color=f"C{k}", alpha=(1, 0.5)[which], hatch=(None, "//")[which])
+            axes[0].bar(k + 0.27 * which, q, 0.25, yerr=spread, color=f"C{k}", alpha=(1, 0.5)[which],
+                        hatch=(None, "//")[which])
             z = profile[:, 1] / D + shift
             style = dict(color=f"C{k}", ls=("-", ":")[which])
             axes[1].plot(profile[:, 3], z, **style)
             solid = profile[:, 3] > 1e-2
             axes[2].plot(profile[solid, 4], z[solid], label=f"run {run}, {rules}", **style)
             axes[3].plot(profile[:-1, 2], z[:-1], **style)
-    axes[0].set(xticks=range(3), xticklabels=[f"run {run}" for run in RUNS], ylabel="q*", title="Transport rate (hatched: consistent)")
+    axes[0].set(xticks=range(3), xticklabels=[f"run {run}" for run in RUNS], ylabel="q*",
+                title="Transport rate (hatched: consistent)")
     axes[1].set(xlabel="phi", ylabel="z/d", title="Volume fraction (dots: measured)")
     axes[2].set(xlabel="m/s", title="Velocity of the grains (dots: measured)")
     axes[3].set(xlabel="m/s", title="Velocity of the water")

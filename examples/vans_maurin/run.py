@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Run r2d6s2 of Maurin, Chauchat and Frey (2016): transport, stress, surface velocity and profiles beside the published ones, maurin.png.
+"""Run r2d6s2 of Maurin, Chauchat and Frey (2016): transport, stress, surface velocity and profiles beside the published
+ones, maurin.png.
     run.py [--ranks N] [--seconds T] [--beds N] [--out DIR] [--reuse DIR] [--update]
 
-The means are those of the second half of the run. --beds: so many beds from other seeds; with two or more the errors are those between beds, with
-one those between its seconds. Needs lmp on the PATH (. build/env.sh). Ends with a line ok or MISSED for each figure of the README. --reuse reads
-results of an earlier run in DIR."""
+The means are those of the second half of the run. --beds: so many beds from other seeds; with two or more the errors
+are those between beds, with one those between its seconds. Needs lmp on the PATH (. build/env.sh). Ends with a line ok
+or MISSED for each figure of the README. --reuse reads results of an earlier run in DIR."""
 import os
 import sys
 
@@ -36,7 +37,8 @@ def simulate(given, directory, published, bed):
     if not given.reuse:
         start(given.out / f"start.{bed}", published)
         lmp(HERE, given, directory, name=bed, seed=4711 + bed, seconds=given.seconds, start=f"start.{bed}")
-    return np.loadtxt(os.path.join(directory, f"series.{bed}"))[:, 1:], profiles(os.path.join(directory, f"profiles.{bed}"), 0.5)
+    return np.loadtxt(os.path.join(directory, f"series.{bed}"))[:, 1:], profiles(
+        os.path.join(directory, f"profiles.{bed}"), 0.5)
 
 
 def figures(series, profile):
@@ -46,7 +48,8 @@ def figures(series, profile):
 
 
 def columns(profile):
-    """z/d and the four published profiles; the stress at the lower edge of its slice, the velocity of grains where there are some."""
+    """z/d and the four published profiles; the stress at the lower edge of its slice, the velocity of grains where
+    there are some."""
     z, phi = profile[:, 1] / D, profile[:, 3]
     dz = z[1] - z[0]
     solid = phi > 1e-2
@@ -63,7 +66,8 @@ def main():
     seconds = [by_second(series[:, 0], series[:, k], 0.5 * series[-1, 0]) for k in (1, 2, 3)]
     for k, (what, wanted) in enumerate(PUBLISHED.items()):
         spread = error(found[:, k]) if len(beds) > 1 else error(seconds[k] / (SCALE if k == 0 else 1))
-        print(f"{what:15s} {found[:, k].mean():.4f} +- {spread:.4f}, published {wanted:.4f}: {100 * (found[:, k].mean() / wanted - 1):+.1f} %")
+        print(f"{what:15s} {found[:, k].mean():.4f} +- {spread:.4f}, published {wanted:.4f}: "
+              f"{100 * (found[:, k].mean() / wanted - 1):+.1f} %")
         c.near(what, found[:, k].mean(), wanted, TOLERANCE[what])
 
     figure, axes = plt.subplots(1, 4, figsize=(15, 4.6), sharey=True)
@@ -82,7 +86,8 @@ def main():
     axes[0].legend(frameon=False)
     figure.tight_layout()
     figure.savefig(given.out / "maurin.png", dpi=100)
-    np.savetxt(given.out / "beds.csv", found, fmt="%.4f", delimiter=",", header=",".join(PUBLISHED).replace(", ", " "), comments="")
+    np.savetxt(given.out / "beds.csv", found, fmt="%.4f", delimiter=",", header=",".join(PUBLISHED).replace(", ", " "),
+               comments="")
     keep(HERE, given, "maurin.png", "beds.csv")
     return c.finish()
 

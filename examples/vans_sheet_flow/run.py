@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
-"""Sheet flow of Revil-Baudard et al. (2015): velocity, Reynolds stress and concentration over the measured ones, sheet_flow.png.
-    run.py [--ranks N] [--seconds T] [--bed N] [--suspension yes|no] [--mixing C|off] [--friction F] [--out DIR] [--reuse DIR] [--update]
+"""Sheet flow of Revil-Baudard et al. (2015): velocity, Reynolds stress and concentration over the measured ones,
+sheet_flow.png.
+    run.py [--ranks N] [--seconds T] [--bed N] [--suspension yes|no] [--mixing C|off] [--friction F] [--out DIR]
+    [--reuse DIR] [--update]
 
-The run begins with the measured velocity of the water over a flat bed. Its means are those of the second half. --bed: another seed; --suspension no:
-without the turbulence that spreads the grains; --mixing: bed_mixing; --friction: of two grains. Needs lmp on the PATH (. build/env.sh). Ends with
-a line ok or MISSED for each figure of the README. --reuse reads results of an earlier run in DIR."""
+The run begins with the measured velocity of the water over a flat bed. Its means are those of the second half. --bed:
+another seed; --suspension no: without the turbulence that spreads the grains; --mixing: bed_mixing; --friction: of two
+grains. Needs lmp on the PATH (. build/env.sh). Ends with a line ok or MISSED for each figure of the README. --reuse
+reads results of an earlier run in DIR."""
 import os
 import sys
 
@@ -48,7 +51,8 @@ def closest(profile):
 
 
 def main():
-    given, c = options(__file__, __doc__, ranks=1, seconds=24.0, bed=0, suspension="yes", mixing="0.5", friction=0.2, reuse=""), Checks()
+    given, c = options(__file__, __doc__, ranks=1, seconds=24.0, bed=0, suspension="yes", mixing="0.5", friction=0.2,
+                       reuse=""), Checks()
     need("mpirun", "lmp")
     as_it_is = (given.suspension, given.mixing, given.friction) == ("yes", "0.5", 0.2)
     directory, name = given.reuse or given.out, f"{given.bed}.{given.suspension}.{given.mixing}.{given.friction:g}"
@@ -66,8 +70,9 @@ def main():
     # as published, the volume fraction times the velocity of the water; and that of the grains themselves
     alike, found = (profile[:, 3] * profile[:, 2]).sum() * TOP / (CELLS - 1) / SCALE, late[:, 1].mean() / SCALE
     blocks = by_second(late[:, 0], late[:, 1], late[0, 0]) / SCALE
-    print(f"q* of phi and the water's velocity {alike:.3f}, of the grains {found:.3f} +- {error(blocks):.3f}, by the second {np.round(blocks, 2)}; "
-          f"measured {q / SCALE:.3f}; surface {late[:, 3].mean():.3f} m/s, largest stress {profile[:, 10].max():.2f} Pa")
+    print(f"q* of phi and the water's velocity {alike:.3f}, of the grains {found:.3f} +- {error(blocks):.3f}, "
+          f"by the second {np.round(blocks, 2)}; measured {q / SCALE:.3f}; surface {late[:, 3].mean():.3f} m/s, "
+          f"largest stress {profile[:, 10].max():.2f} Pa")
     if as_it_is:
         c.near("q* of phi and the water's velocity, over the measured one", alike * SCALE / q, 1.0, 0.15)
         c.near("q* of the grains, over the same", found * SCALE / q, 1.0, 0.15)
@@ -77,7 +82,8 @@ def main():
         c.below("q* of the grains, over the measured one", found * SCALE / q, 2.0)
 
     figure, axes = plt.subplots(1, 3, figsize=(12, 4.6), sharey=True)
-    rows = ((z_u, u, profile[:, 2], "velocity of the water, m/s"), (z_u, stress, profile[:, 10], "Reynolds stress, Pa"), (z, phi, profile[:, 3], "phi"))
+    rows = ((z_u, u, profile[:, 2], "velocity of the water, m/s"), (z_u, stress, profile[:, 10], "Reynolds stress, Pa"),
+            (z, phi, profile[:, 3], "phi"))
     for axis, (at, values, ours, what) in zip(axes, rows):
         axis.plot(values, at / D, "o", color="0.3", ms=3.5, label="Revil-Baudard et al. 2015")
         axis.plot(ours[:-1], height[:-1] / D, color="C0", label="fix hydro/vans")

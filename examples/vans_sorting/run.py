@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
-"""Grains of 4 to 8 mm, mixed, under a stream: the large ones rise, sorting.png.     run.py [--seconds T] [--ranks N] [--out DIR] [--reuse DIR] [--quick] [--update]
+"""Grains of 4 to 8 mm, mixed, under a stream: the large ones rise, sorting.png.
 
-Needs lmp on the PATH (. build/env.sh). Ends with a line ok or MISSED for each figure of the README. Results of an earlier run in DIR are read instead with --reuse."""
+    run.py [--seconds T] [--ranks N] [--out DIR] [--reuse DIR] [--quick] [--update]
+
+Needs lmp on the PATH (. build/env.sh). Ends with a line ok or MISSED for each figure of the README. Results of an
+earlier run in DIR are read instead with --reuse."""
 import os
 import pathlib
 import sys
@@ -27,8 +30,9 @@ def blocks(path):
 def side(axes, grains):
     """The loose grains from the side, coloured by their size, those in front last."""
     x, z, r = grains[np.argsort(-grains[:, 2])][:, (1, 3, 4)].T
-    axes.add_collection(EllipseCollection(2 * r, 2 * r, 0, units="xy", offsets=np.column_stack([x, z]), transOffset=axes.transData, array=2000 * r,
-                                          cmap="viridis_r", clim=(4, 8), edgecolors="k", linewidths=0.3))
+    axes.add_collection(EllipseCollection(2 * r, 2 * r, 0, units="xy", offsets=np.column_stack([x, z]),
+                                          transOffset=axes.transData, array=2000 * r, cmap="viridis_r", clim=(4, 8),
+                                          edgecolors="k", linewidths=0.3))
     axes.set(xlim=(0, 0.06), ylim=(-0.006, 0.066), xticks=[], yticks=[], aspect="equal")
 
 
@@ -70,7 +74,8 @@ def main():
     if not given.quick:
         c.holds("every bin ends above all smaller ones", np.all(np.diff(last) > 0))
         c.within("correlation of rise and size", np.corrcoef(size, rise)[0, 1], 0.95, 1.0)
-        c.within("armour: mean size of the surface over that of all", mean_size["surface"] / mean_size["all"], 1.08, 1.25)
+        c.within("armour: mean size of the surface over that of all", mean_size["surface"] / mean_size["all"], 1.08,
+                 1.25)
 
     figure, axes = plt.subplots(1, 4, figsize=(15, 4.4), gridspec_kw={"width_ratios": (1.1, 1.1, 1, 1.3)})
     frames = list(dumped(directory / "grains.dump"))

@@ -2,8 +2,9 @@
 """Sheet flow below waves: Shields number, transport rate and thickness of the sheet beside published laws, waves.png.
     run.py [--quick] [--ranks N] [--waves N] [--seed N] [--out DIR] [--reuse DIR] [--update]
 
-The first wave, in which the water begins at rest, is left out; --quick runs a quarter of it over a thin bed. Needs lmp on the
-PATH (. build/env.sh). Ends with a line ok or MISSED for each figure of the README. --reuse reads results of an earlier run in DIR."""
+The first wave, in which the water begins at rest, is left out; --quick runs a quarter of it over a thin bed. Needs lmp
+on the PATH (. build/env.sh). Ends with a line ok or MISSED for each figure of the README. --reuse reads results of an
+earlier run in DIR."""
 import os
 import sys
 
@@ -27,13 +28,15 @@ def swart(roughness):
 
 
 def ribberink(theta):
-    """Mean q* of half a wave by the bed load of Ribberink (1998), 11 (theta - 0.05)^1.65, at the stress of every moment."""
+    """Mean q* of half a wave by the bed load of Ribberink (1998), 11 (theta - 0.05)^1.65, at the stress of every
+    moment."""
     now = theta * np.sin(np.pi * (np.arange(500) + 0.5) / 500) ** 2
     return (11 * np.maximum(now - 0.05, 0) ** 1.65).mean()
 
 
 def blocks(path):
-    """[profile, slice, column] of the file of fix ave/time: z, velocity of the water, phi, velocity of the grains, stress"""
+    """[profile, slice, column] of the file of fix ave/time: z, velocity of the water, phi, velocity of the grains,
+    stress"""
     rows = [line.split() for line in open(path) if line[0] != "#"]
     size = int(rows[0][1]) + 1
     whole = [rows[k + 1:k + size] for k in range(0, len(rows) - size + 1, size)]
@@ -48,7 +51,8 @@ def sheet(profile):
 
 
 def of_a_wave(path, waves):
-    """[phase, slice, column]: means of the same phase of all half waves but those of the first wave; going backwards is going forwards, turned round"""
+    """[phase, slice, column]: means of the same phase of all half waves but those of the first wave; going backwards is
+    going forwards, turned round"""
     turned = blocks(path)[PARTS:PARTS * waves] * 1.0
     backwards = (np.arange(len(turned)) // (PARTS // 2)) % 2 == 1
     turned[np.ix_(backwards, range(turned.shape[1]), [1, 3, 4])] *= -1
@@ -88,9 +92,11 @@ def main():
     rows = [("largest Shields number; Swart 1974, roughness 2.5 d", theta.max(), wanted),
             ("mean q* of half a wave; Ribberink 1998 at that number", np.mean(halves), ribberink(theta.max())),
             ("thickness of the sheet over d; 13 times that number", layer, 13 * theta.max())]
-    table = "| | here | published | ratio |\n|---|---|---|---|\n" + "".join("| %s | %.2f | %.2f | %.2f |\n" % (*row, row[1] / row[2]) for row in rows)
-    print(table + f"q* of {len(halves)} halves: {np.round(halves, 2)}, error of the mean {error(halves):.2f}; sheet from {bottom / D:.1f} to {top / D:.1f} d, "
-          f"phase of the largest stress {(most + 0.5) / PARTS:.2f} of a wave; largest velocity at the surface {abs(surface[late]).max():.2f} m/s")
+    table = ("| | here | published | ratio |\n|---|---|---|---|\n" +
+             "".join("| %s | %.2f | %.2f | %.2f |\n" % (*row, row[1] / row[2]) for row in rows))
+    print(table + f"q* of {len(halves)} halves: {np.round(halves, 2)}, error of the mean {error(halves):.2f}; "
+          f"sheet from {bottom / D:.1f} to {top / D:.1f} d, phase of the largest stress {(most + 0.5) / PARTS:.2f} of "
+                  f"a wave; largest velocity at the surface {abs(surface[late]).max():.2f} m/s")
     c.near("largest Shields number over Swart's", rows[0][1] / rows[0][2], 1.0, 0.3)
     c.near("mean q* of half a wave over Ribberink's", rows[1][1] / rows[1][2], 1.0, 0.5)
     c.near("thickness of the sheet over 13 d times the Shields number", rows[2][1] / rows[2][2], 1.0, 0.35)

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Viscosity of suspensions by multiblobs: of dilute rigid clumps and of pairs of spheres beside exact numbers, and of 200 spheres in
-steady shear beside published laws.
+"""Viscosity of suspensions by multiblobs: of dilute rigid clumps and of pairs of spheres beside exact numbers, and of
+200 spheres in steady shear beside published laws.
 
-    run.py --out DIR            clumps, pairs, a short shear, and the picture with shear.csv; to DIR (default: build/examples/viscosity)
+    run.py --out DIR            clumps, pairs, a short shear, and the picture with shear.csv; to DIR (default:
+                                build/examples/viscosity)
     run.py --strain 25          also shears each suspension by so much (an hour)
     run.py --strain 25 --update also refreshes shear.csv and the picture in this folder
 
@@ -42,23 +43,26 @@ def answer(lammps, E):
 
 
 def intrinsic(lammps, x, model):
-    lammps.place(x - x.mean(axis=0), f"cut_off_distance inf {model} rigid_clumps yes fluid_velocity v_ux v_uy v_uz", molecule=1)
+    lammps.place(x - x.mean(axis=0), f"cut_off_distance inf {model} rigid_clumps yes fluid_velocity v_ux v_uy v_uz",
+                 molecule=1)
     return 2.5 / len(x) * np.mean([answer(lammps, E) for E in STRAINS])
 
 
-# --- pairs: the coefficient of phi^2 -----------------------------------------------------------------------------------------
+# --- pairs: the coefficient of phi^2 ----------------------------------------------------------------------------------
 
 
 def excess(lammps, r, direction, model):
     """Mean stresslet of a sphere of a free pair over all strains, less that of a lone sphere"""
-    lammps.place(np.outer([-r / 2, r / 2], direction), f"cut_off_distance inf {model} lubrication yes lubrication_gap 1e-6 "
+    lammps.place(np.outer([-r / 2, r / 2], direction),
+                 f"cut_off_distance inf {model} lubrication yes lubrication_gap 1e-6 "
                  "fluid_velocity v_ux v_uy v_uz", tolerance=1e-9)
     return np.mean([answer(lammps, E) for E in STRAINS]) / 2 - 1
 
 
 def of_pairs(lammps, model, nodes=16, far=20.0):
-    """Viscosity 1 + 5/2 phi + c phi^2 of spheres at random places: c = 5/2 + 15/2 int J r^2 dr over r > 2, J the excess of a pair at r;
-    J falls as r^-6 (Batchelor & Green 1972). With r = 2/u, u = 1 - (1 - v)^3 nodes are dense at contact."""
+    """Viscosity 1 + 5/2 phi + c phi^2 of spheres at random places: c = 5/2 + 15/2 int J r^2 dr over r > 2, J the excess
+    of a pair at r; J falls as r^-6 (Batchelor & Green 1972). With r = 2/u, u = 1 - (1 - v)^3 nodes are dense at
+    contact."""
     directions = np.linalg.qr(np.random.default_rng(4711).normal(size=(3, 3)))[0]
     last = 1 - (1 - 2 / far)**(1 / 3)
     points, weights = np.polynomial.legendre.leggauss(nodes)
@@ -69,7 +73,7 @@ def of_pairs(lammps, model, nodes=16, far=20.0):
     return c
 
 
-# --- steady shear ------------------------------------------------------------------------------------------------------------
+# --- steady shear -----------------------------------------------------------------------------------------------------
 
 
 def equilibrium_law(phi):
@@ -147,7 +151,7 @@ def order_of_the_step(out, phi=0.2, n=32, strain=0.4):
     return errors
 
 
-# --- picture and figures ----------------------------------------------------------------------------------------------------
+# --- picture and figures ----------------------------------------------------------------------------------------------
 
 
 def draw(clumps, table, path):
@@ -158,8 +162,8 @@ def draw(clumps, table, path):
     for k, (model, mark) in enumerate(zip(MODELS, "os")):
         left.plot(place, [found[k] for _, found in clumps.values()], mark, color=f"C{2 * k}", ms=7 - 3 * k, label=model)
     for x, (exact, found) in zip(place, clumps.values()):
-        left.annotate(f"{exact:.3g}\n{100 * (found[0] / exact - 1) + 0.0:+.2f} %", (x, exact), xytext=(0, 5), textcoords="offset points",
-                      ha="center", fontsize=8)
+        left.annotate(f"{exact:.3g}\n{100 * (found[0] / exact - 1) + 0.0:+.2f} %", (x, exact), xytext=(0, 5),
+                      textcoords="offset points", ha="center", fontsize=8)
     left.set_xticks(place, names, rotation=35, ha="right")
     left.set(ylabel="intrinsic viscosity", ylim=(0, 22), title="rigid clumps, dilute")
     left.legend(fontsize=8, loc="upper left")
@@ -168,8 +172,10 @@ def draw(clumps, table, path):
     right.plot(phi, equilibrium_law(phi), "k-", lw=1, label="at equilibrium, simulations: Sierou & Brady 2001")
     right.plot(phi, morris_boulay(phi), "k:", lw=1.2, label="law of Morris & Boulay 1999")
     y, error = (np.array([float(row[key]) for row in table]) for key in ("viscosity", "viscosity_error"))
-    right.errorbar([float(row["phi"]) for row in table], y, 2 * error, fmt="o", color="C0", label="multiblob 12 in steady shear")
-    right.set(yscale="log", xlabel="volume fraction", ylabel="viscosity / that of the fluid", title="200 spheres in steady shear")
+    right.errorbar([float(row["phi"]) for row in table], y, 2 * error, fmt="o", color="C0",
+                   label="multiblob 12 in steady shear")
+    right.set(yscale="log", xlabel="volume fraction", ylabel="viscosity / that of the fluid",
+              title="200 spheres in steady shear")
     right.set_yticks((1, 2, 3, 5, 10), (1, 2, 3, 5, 10))
     right.minorticks_off()
     right.legend(fontsize=8, loc="upper left")
@@ -189,23 +195,28 @@ def main():
 
     errors = order_of_the_step(given.out)
     print("  largest error of a place by steps: " + ", ".join(f"{step}: {error:.2e}" for step, error in errors.items()))
-    c.near("ab2 across sheared faces: error at steps of 0.04 over 0.02, of second order beside 0.005", errors[0.04] / errors[0.02], 63 / 15, 0.5)
+    c.near("ab2 across sheared faces: error at steps of 0.04 over 0.02, of second order beside 0.005",
+           errors[0.04] / errors[0.02], 63 / 15, 0.5)
 
     if given.strain:
         table = [steady(given.out, phi, given.strain) for phi in PHIS]
         (given.out / "shear.csv").write_text(
-            f"# 200 spheres in steady shear, over the fluid's viscosity and the rate; errors of the mean. run.py --strain {given.strain:g} --update\n" +
-            ",".join(table[0]) + "\n" + "".join(",".join(f"{value:.5g}" for value in row.values()) + "\n" for row in table))
+            "# 200 spheres in steady shear, over the fluid's viscosity and the rate; errors of the mean. "
+            f"run.py --strain {given.strain:g} --update\n" +
+            ",".join(table[0]) + "\n" + "".join(",".join(f"{value:.5g}" for value in row.values()) + "\n"
+                                                for row in table))
     kept = read_table((given.out if given.strain else HERE) / "shear.csv")
     for row in ({key: float(value) for key, value in row.items()} for row in kept):
         phi, slack = row["phi"], 2 * row["viscosity_error"]
-        c.within(f"steady shear, phi {phi}: viscosity, between the published laws", row["viscosity"], morris_boulay(phi) - slack,
-                 zarraga(phi) + slack)
+        c.within(f"steady shear, phi {phi}: viscosity, between the published laws", row["viscosity"],
+                 morris_boulay(phi) - slack, zarraga(phi) + slack)
         c.below(f"steady shear, phi {phi}: second normal stress difference is negative", row["N2"], 2 * row["N2_error"])
-        c.below(f"steady shear, phi {phi}: products of a step, second half over the first", row["products_late"] / row["products"], 1.1)
+        c.below(f"steady shear, phi {phi}: products of a step, second half over the first",
+                row["products_late"] / row["products"], 1.1)
         c.below(f"steady shear, phi {phi}: largest overlap, in radii", -row["gap"], 0.01)
     begin = viscosity_of(sheared(given.out, "short", 0.3, N, strain=0.04, step=0.01, every=1))[0]
-    c.near("phi 0.3: viscosity of one set of places at equilibrium, over the published one", begin / equilibrium_law(0.3), 1, 0.06)
+    c.near("phi 0.3: viscosity of one set of places at equilibrium, over the published one",
+           begin / equilibrium_law(0.3), 1, 0.06)
     draw(clumps, kept, given.out / "viscosity.png")
     if given.update:
         for name in ("viscosity.png",) + (("shear.csv",) if given.strain else ()):

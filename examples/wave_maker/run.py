@@ -29,6 +29,7 @@ axis.plot(t[last], fit[4] + 0.5 * stroke * theory * np.cos(w * t[last] - 3 * k),
 axis.set(xlabel=r"$t \sqrt{g/H}$", ylabel="height of the surface")
 axis.legend()
 figure.savefig(os.path.join(out, "wave_maker.png"), bbox_inches="tight")
-S.keep(folder, out, "wave_maker.png", "| | run | linear theory |\n|---|---|---|\n| height over stroke | %.3f | %.3f |\n| phase at x = 3, radians | %+.3f | 0 |\n"
+S.keep(folder, out, "wave_maker.png", "| | run | linear theory |\n|---|---|---|\n| height over stroke | %.3f | %.3f |\n"
+                                      "| phase at x = 3, radians | %+.3f | 0 |\n"
        % (ratio, theory, ahead))
 sys.exit(c.finish())

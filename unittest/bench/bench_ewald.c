@@ -1,5 +1,5 @@
-/* Time of products by Ewald sums in units of T4, the product of all pairs of 10^4 spheres in the same run, with the error of the
- * answer beside it.
+/* Time of products by Ewald sums in units of T4, the product of all pairs of 10^4 spheres in the same run, with the
+ * error of the answer beside it.
  *   bench_ewald [ROW ...]      rows: names of the table below; none: all but those of 10^6 and 10^7 */
 #define _POSIX_C_SOURCE 200809L
 #include "../core/stokes/ewald/periodic.h"
@@ -72,8 +72,8 @@ static double all_pairs(void)
 }
 
 /* Product at a tolerance; place and apply times, best of RUNS. STOKESDYN_ONE_LEVEL: never two */
-static void product(const row *r, const double *x, const double *a, const double *F, double tolerance, const sd_ewald_box *box,
-                    double *u, double *times, sd_ewald *how)
+static void product(const row *r, const double *x, const double *a, const double *F, double tolerance,
+                    const sd_ewald_box *box, double *u, double *times, sd_ewald *how)
 {
   double *w = malloc(sizeof(double) * (size_t) r->n);
   for (int i = 0; i < r->n; i++) w[i] = 1.0;
@@ -138,9 +138,10 @@ static void measure(const row *r)
       off += pow(u[r->width * i + d] - v[r->width * i + d], 2);
       all += pow(F[r->width * i + d] / (6 * SD_PI * a[i]), 2);
     }
-  printf("%-11s N %8d tolerance %.0e error %.1e: %6.2f T4 (%.4f s, T4 %.4f s); places %.4f s, tables %.2f s; range %.1f grid %d P %d; %.0f MB\n",
-         r->name, r->n, r->tolerance, sqrt(off / all), times[1] / T4, times[1], T4, times[0], times[2] - times[0], how.range,
-         how.grid[0], how.points, usage.ru_maxrss / 1024.0);
+  printf("%-11s N %8d tolerance %.0e error %.1e: %6.2f T4 (%.4f s, T4 %.4f s); places %.4f s, tables %.2f s; range "
+         "%.1f grid %d P %d; %.0f MB\n",
+         r->name, r->n, r->tolerance, sqrt(off / all), times[1] / T4, times[1], T4, times[0], times[2] - times[0],
+         how.range, how.grid[0], how.points, usage.ru_maxrss / 1024.0);
   fflush(stdout);
   free(x), free(a), free(F), free(u), free(v);
 }

@@ -1,5 +1,5 @@
-/* Time of the flow at 10^6 points of a grid around 10^5 spheres in a periodic box, in products by Ewald sums of the same spheres at
- * the same tolerance in the same run, with the error of the flow beside it.
+/* Time of the flow at 10^6 points of a grid around 10^5 spheres in a periodic box, in products by Ewald sums of the
+ * same spheres at the same tolerance in the same run, with the error of the flow beside it.
  *   bench_field [TOLERANCE [WIDTH]] */
 #define _POSIX_C_SOURCE 200809L
 #include "../core/stokes/ewald/periodic.h"
@@ -23,7 +23,8 @@ int main(int count, char **word)
   const double tolerance = count > 1 ? atof(word[1]) : 1e-3;
   const int m = count > 2 ? atoi(word[2]) : 3;
   const size_t n = SPHERES, points = (size_t) EDGE * EDGE * EDGE;
-  double *x = malloc(24 * n), *a = malloc(8 * n), *w = malloc(8 * n), *both = malloc(48 * n), *F = malloc(24 * n), *T = malloc(24 * n);
+  double *x = malloc(24 * n), *a = malloc(8 * n), *w = malloc(8 * n), *both = malloc(48 * n), *F = malloc(24 * n),
+         *T = malloc(24 * n);
   double *v = malloc(48 * n), *u = malloc(24 * points), *exact = malloc(24 * points);
   uint64_t seed = 9;
   sd_ewald_box box = {.periodic = 1};
@@ -58,7 +59,7 @@ int main(int count, char **word)
   sd_field_free(&fine);
   for (size_t k = 0; k < 3 * points; k++) off += pow(u[k] - exact[k], 2) / points;
   for (size_t k = 0; k < 3 * n; k++) all += pow(F[k] / (6 * SD_PI), 2) / n;
-  printf("tolerance %.0e, error %.1e: product %.4f s, flow at 1e6 points %.4f s (the first %.2f s): %.2f products\n", tolerance,
-         sqrt(off / all), product, field, first, field / product);
+  printf("tolerance %.0e, error %.1e: product %.4f s, flow at 1e6 points %.4f s (the first %.2f s): %.2f products\n",
+         tolerance, sqrt(off / all), product, field, first, field / product);
   return 0;
 }

@@ -46,7 +46,8 @@ static void tell(settling *s, const char *what, int warm, double tolerance)
   const times t = measure(s, warm, tolerance);
   const int products = s->report.products;
   const long within = s->tie.products;
-  double *reference = malloc(sizeof(double) * 6 * (size_t) s->A.lone), *mine = malloc(sizeof(double) * 6 * (size_t) s->A.lone);
+  double *reference = malloc(sizeof(double) * 6 * (size_t) s->A.lone),
+         *mine = malloc(sizeof(double) * 6 * (size_t) s->A.lone);
   const size_t bytes = sizeof(double) * 6 * (size_t) s->A.lone;
   memcpy(mine, s->v, bytes);
   settling_solve(s, 0, 1e-8);

@@ -1,5 +1,5 @@
-/* Forces from velocities by two solvers, in products: points by sd_solve_gradients, without preconditioner, and the same
- * spheres as bodies that all rest in the slip, by sd_bodies_solve; with the error of the forces.
+/* Forces from velocities by two solvers, in products: points by sd_solve_gradients, without preconditioner, and the
+ * same spheres as bodies that all rest in the slip, by sd_bodies_solve; with the error of the forces.
  *   bench_resting      README.md has the command and figures */
 #include "bench_scene.h"
 
@@ -20,7 +20,8 @@ static double error_of(int n, const double *F, const double *exact)
 static void row(const char *name, scene *s, const double *slip, const double *guess, double tolerance)
 {
   const size_t bytes = sizeof(double) * 3 * (size_t) s->n;
-  double *F = calloc(3 * (size_t) s->n, sizeof(double)), *work = malloc(sizeof(double) * SD_SOLVE_WORK(s->n, 3)), error[3];
+  double *F = calloc(3 * (size_t) s->n, sizeof(double)), *work = malloc(sizeof(double) * SD_SOLVE_WORK(s->n, 3)),
+         error[3];
   int as_good = 0;
   double *exact = calloc(3 * (size_t) s->n, sizeof(double));
   sd_system A = scene_system(s);
@@ -40,8 +41,8 @@ static void row(const char *name, scene *s, const double *slip, const double *gu
     as_good = resting_solve(s, slip, guess != NULL, try, F);
     if (error_of(s->n, F, exact) <= error[0]) break;
   }
-  printf("  %-40s %.0e %8d %9.1e %8d %9.1e %8d %9.1e %8d\n", name, tolerance, report.products, error[0], own, error[1], same,
-         error[2], as_good);
+  printf("  %-40s %.0e %8d %9.1e %8d %9.1e %8d %9.1e %8d\n", name, tolerance, report.products, error[0], own, error[1],
+         same, error[2], as_good);
   free(F);
   free(exact);
   free(work);
@@ -74,7 +75,8 @@ static void rows(const char *name, scene s)
 int main(void)
 {
   setvbuf(stdout, NULL, _IOLBF, 0);
-  printf("Products and error of the forces: points; bodies at rest, that number as their own tolerance; to the same residual; products to the same error\n");
+  printf("Products and error of the forces: points; bodies at rest, that number as their own tolerance; to the same "
+         "residual; products to the same error\n");
   rows("8^3 touching", scene_lattice(8, 8, 8, 2.0, 0.7, ETA));
   rows("1000 polydisperse, phi 0.2", polydisperse(1000, 1));
   rows("500, phi 0.45", cloud_dense(500, 0.45, 0.7, 1.3, ETA, 1));

@@ -1,5 +1,5 @@
-/* Time of products above a floor and between two walls in boxes periodic along them, over that of the periodic product of as many
- * spheres in the same run, with the error of the answer beside it.
+/* Time of products above a floor and between two walls in boxes periodic along them, over that of the periodic product
+ * of as many spheres in the same run, with the error of the answer beside it.
  *   bench_slab [ROW ...]      rows: names of the table below; none: all
  * In the environment SPHERES: how many; DIGITS: of the tolerance; PRODUCTS: so many of each and no error,
  * for a profiler. */
@@ -8,8 +8,8 @@
 #include "../core/stokes/slab/slab.h"
 #include "cpu.h"
 
-/* Height of the slit, 0: a floor; of the highest sphere above it, where they lie on it with a fraction of the area; radius; volume
- * fraction */
+/* Height of the slit, 0: a floor; of the highest sphere above it, where they lie on it with a fraction of the area;
+ * radius; volume fraction */
 typedef struct {
   const char *name;
   double slit, highest, radius, phi, area;
@@ -80,7 +80,8 @@ static double periodic_time(int n, double tolerance)
   periodic p = {.n = n, .width = 3};
   if (sd_ewald_levels_choose(&box, &sizes, 3, tolerance, &p.ewald, &p.second) != SD_OK) exit(1);
   periodic_images(&p, s.x, s.a, s.w);
-  const sd_mobility_scene scene = {.how = {.law = {.tensor = SD_TENSOR_RPY}, .width = 3, .ewald = &p.ewald, .second = &p.second},
+  const sd_mobility_scene scene = {.how = {.law = {.tensor = SD_TENSOR_RPY}, .width = 3, .ewald = &p.ewald,
+                                           .second = &p.second},
                                    .n = n,
                                    .n_all = p.n_all,
                                    .spheres = {p.x, p.a, p.w},
@@ -94,7 +95,8 @@ static double periodic_time(int n, double tolerance)
 
 static void slab_time(const row *r, int n, double tolerance, double periodic)
 {
-  const double V = n * (r->radius == POINT ? 4.0 / 3.0 * SD_PI / 12.0 : 4.0 / 3.0 * SD_PI) / (r->phi > 0.0 ? r->phi : 1.0);
+  const double V = n * (r->radius == POINT ? 4.0 / 3.0 * SD_PI / 12.0 : 4.0 / 3.0 * SD_PI) /
+      (r->phi > 0.0 ? r->phi : 1.0);
   const double height = r->slit > 0.0 ? r->slit : cbrt(V);
   const double edge = r->area > 0.0 ? sqrt(n * SD_PI / r->area) : sqrt(V / height), edges[2] = {edge, edge};
   const sd_wall ground = {2, 1, 0.0};
@@ -124,7 +126,8 @@ static void slab_time(const row *r, int n, double tolerance, double periodic)
     off += (u - s.v[i]) * (u - s.v[i]);
     all += bare * bare;
   }
-  printf("%-11s %.0e: %.2f periodic products (%.4f s), error %.1e; places %.3f s; range %.2f, images %.2f, grid %d x %d x %d, "
+  printf("%-11s %.0e: %.2f periodic products (%.4f s), error %.1e; places %.3f s; range %.2f, images %.2f, grid %d x "
+         "%d x %d, "
          "planes %d, P %d\n",
          r->name, tolerance, time / periodic, time, sqrt(off / all), place, how.ewald.range, how.ewald.images.range,
          how.ewald.grid[0], how.ewald.grid[1], how.ewald.grid[2], how.ewald.slab.planes, how.ewald.points);

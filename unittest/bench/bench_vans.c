@@ -1,5 +1,5 @@
-/* Cost of the stream of fix hydro/vans on one core: fluid step per slice, averages and forces per grain. Processor time,
- * median of 9 runs.
+/* Cost of the stream of fix hydro/vans on one core: fluid step per slice, averages and forces per grain. Processor
+ * time, median of 9 runs.
  *   build/bench_vans */
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
@@ -77,7 +77,8 @@ static void grains(double ratio, int n, int felt_by_volume, sd_drag_law drag_law
   }
   for (int i = 0; i < n; i++) radius[i] = a;
   const sd_vans_mesh mesh = {N, 0.0, dz, edge};
-  const sd_vans_force_law law = {.rho = 1000, .eta = 1e-3, .exponent = 3.1, .g = {0.5, 0, -9.8}, .felt_by_volume = felt_by_volume, .drag = drag_law};
+  const sd_vans_force_law law = {.rho = 1000, .eta = 1e-3, .exponent = 3.1, .g = {0.5, 0, -9.8},
+                                 .felt_by_volume = felt_by_volume, .drag = drag_law};
   const sd_vans_averaging how = {0, 0, NULL};
   const sd_vans_grains grains = {n, x, v, radius, NULL, NULL, NULL};
   const int repeat = 400000 / n;
@@ -135,7 +136,8 @@ int main(void)
     for (int felt = 0; felt < 2; felt++) {
       double average, force;
       grains(10.0, 1265, felt, laws[k].law, &average, &force);
-      printf("  a/dz = 10.0, felt %s, %-29s %6.1f    %6.1f\n", felt ? "volume" : "centre", laws[k].name, average, force);
+      printf("  a/dz = 10.0, felt %s, %-29s %6.1f    %6.1f\n", felt ? "volume" : "centre", laws[k].name, average,
+             force);
     }
   return 0;
 }

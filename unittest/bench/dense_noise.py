@@ -3,10 +3,11 @@
 
     dense_noise.py [SPRING] [GAP] [SEEDS] [STEP ...]
 
-32 multiblobs of 12 points with films, at a volume fraction of 0.5 in a periodic box, with a temperature and contacts of SPRING (1000)
-kT/a^2; films end at a GAP of 1e-4 a. Steps of 8e-3, 4e-3, ... 2.5e-4 a^2/D, D = kT/(6 pi eta a): of the last two thirds of 3 a^2/D,
-averaged over SEEDS (2), the energy of contacts of a sphere in kT, the deepest overlap in radii, what a step takes in products, and solves
-that did not converge. h: dt SPRING, the step over the relaxation of a contact."""
+32 multiblobs of 12 points with films, at a volume fraction of 0.5 in a periodic box, with a temperature and contacts of
+SPRING (1000) kT/a^2; films end at a GAP of 1e-4 a. Steps of 8e-3, 4e-3, ... 2.5e-4 a^2/D, D = kT/(6 pi eta a): of the
+last two thirds of 3 a^2/D, averaged over SEEDS (2), the energy of contacts of a sphere in kT, the deepest overlap in
+radii, what a step takes in products, and solves that did not converge. h: dt SPRING, the step over the relaxation of a
+contact."""
 import sys
 import tempfile
 
@@ -37,9 +38,11 @@ def disordered(seed):
 
 def suspension(folder, spring, gap, seed, step):
     words = f"cut_off_distance inf visc {1 / (6 * np.pi)!r} multiblob 12 lubrication yes lubrication_gap {gap!r}"
-    style = [f"pair_style hybrid/overlay gran/hooke {spring!r} NULL 0 NULL 0 0 stokes_dynamics {words}", "pair_coeff * * gran/hooke",
+    style = [f"pair_style hybrid/overlay gran/hooke {spring!r} NULL 0 NULL 0 0 stokes_dynamics {words}",
+             "pair_coeff * * gran/hooke",
              "pair_coeff * * stokes_dynamics"]
-    sim = Simulation(folder, disordered(seed), style, fix=False, dt=step, boundary="p p p", box=[(0.0, EDGE)] * 3, comm="comm_modify vel yes")
+    sim = Simulation(folder, disordered(seed), style, fix=False, dt=step, boundary="p p p", box=[(0.0, EDGE)] * 3,
+                     comm="comm_modify vel yes")
     return sim.commands(f"fix move all stokes_dynamics/overdamped temperature 1.0 {seed}")
 
 
@@ -68,8 +71,8 @@ def main():
         rows = np.array([moments(spring, gap, 4711 + seed, step) for seed in range(int(seeds))])
         energy, deepest, root, solve, failed = rows.mean(axis=0)
         spread = rows[:, 0].std() / max(1, len(rows) - 1)**0.5
-        print(f"dt {step:.3g} a^2/D, h {step * spring:.3g}: {energy:.3f} +- {spread:.3f} kT, overlap {rows[:, 1].max():.3f}, "
-              f"{root:.0f} + {solve:.0f} products, {failed:.0f} failed", flush=True)
+        print(f"dt {step:.3g} a^2/D, h {step * spring:.3g}: {energy:.3f} +- {spread:.3f} kT, "
+              f"overlap {rows[:, 1].max():.3f}, {root:.0f} + {solve:.0f} products, {failed:.0f} failed", flush=True)
 
 
 if __name__ == "__main__":

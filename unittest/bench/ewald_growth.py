@@ -3,9 +3,10 @@
 
     . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/ewald_growth.py [--most 1000000] [--picture FILE]
 
-Spheres of one radius near the points of a cubic lattice, volume fraction 0.2, none overlaps; relative_tolerance 1e-3, warm
-start. Time of the clock of STEPS steps after the first ones, least of REPEATS; on one core. The slope of the logarithms between
-neighbours in N must stay below 1.1 beyond 10^4. Errors of such forces: unittest/lammps/stokes/test_ewald.py."""
+Spheres of one radius near the points of a cubic lattice, volume fraction 0.2, none overlaps; relative_tolerance 1e-3,
+warm start. Time of the clock of STEPS steps after the first ones, least of REPEATS; on one core. The slope of the
+logarithms between neighbours in N must stay below 1.1 beyond 10^4. Errors of such forces:
+unittest/lammps/stokes/test_ewald.py."""
 import argparse
 import os
 import subprocess
@@ -45,9 +46,11 @@ def write(folder, edge):
         out.write(f"spheres\n\n{n} atoms\n1 atom types\n\n" + "".join(f"0 {side:.17g} {c}lo {c}hi\n" for c in "xyz"))
         out.write("\nAtoms\n\n" + "".join(f"{i + 1} 1 2.0 1.0 {p[0]} {p[1]} {p[2]}\n" for i, p in enumerate(x)))
     with open(os.path.join(folder, "in"), "w") as out:
-        out.write(f"units lj\natom_style sphere\nboundary p p p\nplugin load stokesdynplugin.so\nread_data {folder}/data\n"
+        out.write("units lj\natom_style sphere\nboundary p p p\nplugin load stokesdynplugin.so\n"
+                  f"read_data {folder}/data\n"
                   "neighbor 0.3 bin\ncomm_modify cutoff 3\ntimestep 0.002\n"
-                  "pair_style stokes_dynamics cut_off_distance inf visc 1 algorithm 2 relative_tolerance 1e-3 warm_start yes\n"
+                  "pair_style stokes_dynamics cut_off_distance inf visc 1 algorithm 2 relative_tolerance 1e-3 "
+                  "warm_start yes\n"
                   "pair_coeff * *\nfix 1 all nve\nfix 2 all gravity 1 vector 0 0 -1\n")
 
 

@@ -3,11 +3,12 @@
 
     . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/ewald_in_lammps.py [quick | ranks]
 
-A product is the difference of steps with 1 and with 1 + MORE iterations over MORE, vectors of the solver included. Set-up is a
-step in which all spheres move with the fluid: lists, windows and images are made, nothing is left to solve, and no product is
-taken; what LAMMPS does in a step is in it. Least of REPEATS; T4 is measured anew before each row. Processor time. ranks: one and
-two ranks in turn, time of the clock, medians of ROUNDS. Errors: unittest/bench/bench_ewald.c has those of the same sums,
-test_ewald.py those of the forces. Memory: of the process, with all that LAMMPS keeps."""
+A product is the difference of steps with 1 and with 1 + MORE iterations over MORE, vectors of the solver included.
+Set-up is a step in which all spheres move with the fluid: lists, windows and images are made, nothing is left to solve,
+and no product is taken; what LAMMPS does in a step is in it. Least of REPEATS; T4 is measured anew before each row.
+Processor time. ranks: one and two ranks in turn, time of the clock, medians of ROUNDS. Errors:
+unittest/bench/bench_ewald.c has those of the same sums, test_ewald.py those of the forces. Memory: of the process, with
+all that LAMMPS keeps."""
 import os
 import subprocess
 import sys
@@ -61,7 +62,8 @@ def write(folder, n, boundary, ratio):
     x, v = rng.uniform(0, side, (n, 3)), rng.normal(size=(n, 3))
     with open(os.path.join(folder, "data"), "w") as out:
         out.write(f"spheres\n\n{n} atoms\n1 atom types\n\n" + "".join(f"0 {side:.17g} {c}lo {c}hi\n" for c in "xyz"))
-        out.write("\nAtoms\n\n" + "".join(f"{i + 1} 1 {2 * a[i]} 1.0 {x[i][0]} {x[i][1]} {x[i][2]}\n" for i in range(n)))
+        out.write("\nAtoms\n\n" + "".join(f"{i + 1} 1 {2 * a[i]} 1.0 {x[i][0]} {x[i][1]} {x[i][2]}\n"
+                                          for i in range(n)))
         out.write("\nVelocities\n\n" + "".join(f"{i + 1} {v[i][0]} {v[i][1]} {v[i][2]} 0 0 0\n" for i in range(n)))
     with open(os.path.join(folder, "in"), "w") as out:
         out.write(f"units lj\natom_style sphere\nboundary {boundary}\nplugin load stokesdynplugin.so\n"
@@ -72,9 +74,11 @@ def measure(n, boundary, words, ratio=1, rotation="no", ranks=1, clock="process_
     """Seconds of a product, seconds of the set-up of a solve, GB"""
     with tempfile.TemporaryDirectory() as folder:
         write(folder, n, boundary, ratio)
-        style = (f"cut_off_distance inf visc 1 algorithm 2 relative_tolerance 1e-15 warm_start no precondition none rotation {rotation} {words}")
+        style = ("cut_off_distance inf visc 1 algorithm 2 relative_tolerance 1e-15 warm_start no precondition none "
+                 f"rotation {rotation} {words}")
         run = mpirun(ranks)
-        out = subprocess.run(run + [sys.executable, "-c", PROGRAM, f"{folder}/in", style, f"1,{1 + MORE}", clock, str(REPEATS)],
+        out = subprocess.run(run + [sys.executable, "-c", PROGRAM, f"{folder}/in", style, f"1,{1 + MORE}", clock,
+                                    str(REPEATS)],
                              check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment() | {
                                  "LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]}, text=True).stdout.split()
         one, more, setup, memory = [float(word) for word in out[-4:]]
@@ -88,7 +92,8 @@ def two_ranks(n, tolerance):
         for ranks in times:
             times[ranks].append(measure(n, "p p p", words, ranks=ranks, clock="perf_counter")[:2])
     one, two = (np.median(times[ranks], axis=0) for ranks in times)
-    print(f"{n:<9} {tolerance:9}  {one[0]:9.4f} {two[0]:9.4f}   {one[0] / two[0]:5.2f}   {one[1] / two[1]:5.2f}", flush=True)
+    print(f"{n:<9} {tolerance:9}  {one[0]:9.4f} {two[0]:9.4f}   {one[0] / two[0]:5.2f}   {one[1] / two[1]:5.2f}",
+          flush=True)
 
 
 def main():
@@ -101,8 +106,10 @@ def main():
     print("N         scene                    tolerance  product/T4  set-up/T4  GB     (T4 in s)")
     for name, n, boundary, tolerance, ratio, rotation in SCENES[:1] if quick else SCENES:
         t4 = measure(10000, "f f f", "far_field direct")[0]
-        product, setup, memory = measure(n, boundary, f"far_field ewald far_field_tolerance {tolerance}", ratio, rotation)
-        print(f"{n:<9} {name:24} {tolerance:9}  {product / t4:8.2f}  {setup / t4:9.2f}  {memory:5.2f}   ({t4:.4f})", flush=True)
+        product, setup, memory = measure(n, boundary, f"far_field ewald far_field_tolerance {tolerance}", ratio,
+                                         rotation)
+        print(f"{n:<9} {name:24} {tolerance:9}  {product / t4:8.2f}  {setup / t4:9.2f}  {memory:5.2f}   ({t4:.4f})",
+              flush=True)
 
 
 if __name__ == "__main__":

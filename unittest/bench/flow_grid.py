@@ -3,10 +3,11 @@
 
     . build/env.sh; unittest/bench/flow_grid.py [--repeat 3] [--scenes "in contact" ...]
 
-97336 spheres in a periodic box, one core. Free: pair style and fix nve/sphere, nothing else. In contact: a bed of overlapping
-spheres that jostle, as in DEM: gran/hooke/history, lists that are made anew, communication. Processor time, ns a sphere and step,
-the smallest of several runs of 50 steps, the fluids in turn. The flow is linear, so that the look-up is exact: the largest
-difference of a force from that of the formula, in units of the largest force, stands beside it."""
+97336 spheres in a periodic box, one core. Free: pair style and fix nve/sphere, nothing else. In contact: a bed of
+overlapping spheres that jostle, as in DEM: gran/hooke/history, lists that are made anew, communication. Processor time,
+ns a sphere and step, the smallest of several runs of 50 steps, the fluids in turn. The flow is linear, so that the
+look-up is exact: the largest difference of a force from that of the formula, in units of the largest force, stands
+beside it."""
 import argparse
 import pathlib
 import sys
@@ -57,7 +58,8 @@ def write_grid(path, n):
 
 def simulation(folder, scene, fluid):
     sim = Simulation(folder)
-    return sim.commands(SCENE + SCENES[scene].format(drag=f"{DRAG} fluid_velocity {fluid}") + "fix move all nve/sphere\n")
+    return sim.commands(SCENE + SCENES[scene].format(drag=f"{DRAG} fluid_velocity {fluid}") +
+                        "fix move all nve/sphere\n")
 
 
 def error(folder, fluid):
@@ -91,7 +93,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         fluids = {"a number": "1e-3 5e-4 2e-4"}
         fluids.update((f"grid of {n}^3", write_grid(f"{folder}/{n}.grid", n)) for n in (33, 65, 129))
-        print("| scene | fluid_velocity | ns a sphere and step | more than a number | of the step, % | error of the drag |")
+        print("| scene | fluid_velocity | ns a sphere and step | more than a number | of the step, % |"
+              " error of the drag |")
         print("|---|---|---|---|---|---|")
         errors = {name: error(folder, words) for name, words in fluids.items() if name != "a number"}
         for scene in options.scenes:

@@ -1,4 +1,5 @@
-"""numpy, and the way to the helpers of unittest/lammps. Debian's python has numpy and pytest, another one on the PATH need not."""
+"""numpy, and the way to the helpers of unittest/lammps. Debian's python has numpy and pytest, another one on the PATH
+need not."""
 import os
 import sys
 

@@ -4,9 +4,9 @@
     . build/env.sh
     /usr/bin/python3 unittest/bench/grains_cost.py [--repeat 3] [--steps 8] [--side 46] [--grains 10000]
 
-side^3 water particles on a lattice, h of 2 spacings, viscosity, shift and delta; grains of half a spacing at random among them, periodic. Every
-repetition runs both one after the other, so that a busy machine slows both alike; the ratio is that of processor time on one rank, the median of
-the repetitions.
+side^3 water particles on a lattice, h of 2 spacings, viscosity, shift and delta; grains of half a spacing at random
+among them, periodic. Every repetition runs both one after the other, so that a busy machine slows both alike; the ratio
+is that of processor time on one rank, the median of the repetitions.
 """
 import argparse
 import statistics
@@ -54,11 +54,12 @@ def main():
     scene, ratios = SCENE.format(side=given.side, grains=given.grains), []
     with tempfile.TemporaryDirectory() as folder:
         for _ in range(given.repeat):
-            without, coupled = [seconds(scene + more, given.steps, 1, folder) / given.steps for more in ("", "fix couple grains sph/grains\n")]
+            without, coupled = [seconds(scene + more, given.steps, 1, folder) / given.steps
+                                for more in ("", "fix couple grains sph/grains\n")]
             ratios.append(coupled / without)
             print(f"  a step {without:.3f} s without, {coupled:.3f} s with the coupling: {ratios[-1]:.3f}", flush=True)
-    print(f"{given.grains} grains in {given.side ** 3} water particles: {statistics.median(ratios):.3f} of the step without the coupling "
-          f"({min(ratios):.3f} to {max(ratios):.3f})")
+    print(f"{given.grains} grains in {given.side ** 3} water particles: {statistics.median(ratios):.3f} of the step "
+          f"without the coupling ({min(ratios):.3f} to {max(ratios):.3f})")
 
 
 if __name__ == "__main__":

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Growth of the Rayleigh-Taylor instability of a suspension of phi 0.1 over clear water (fix sph/grains), and of two fluids of its density, against
-linear theory.
+"""Growth of the Rayleigh-Taylor instability of a suspension of phi 0.1 over clear water (fix sph/grains), and of two
+fluids of its density, against linear theory.
 
     . build/env.sh
-    unittest/bench/grains_growth.py [WAVELENGTH ...]     # in spacings of the water, h = 2; 16 and 32 unless others are given: half a minute on a free core
+    unittest/bench/grains_growth.py [WAVELENGTH ...] 
 
-Scene and theory are those of unittest/lammps/sph/test_sph_suspension.py. "With the kernel" is the theory of grains that move with the mean of the
-water over the kernel and bear on that mean.
+In spacings of the water, h = 2; 16 and 32 unless others are given: half a minute on a free core.
+
+Scene and theory are those of unittest/lammps/sph/test_sph_suspension.py. "With the kernel" is the theory of grains that
+move with the mean of the water over the kernel and bear on that mean.
 """
 import os
 import sys
@@ -50,12 +52,14 @@ fix lift light addforce 0 0 {up}
 
 def two_fluids(across):
     rho = 1 + EXCESS
-    return TWO_FLUIDS.format(across=across, low=across // 4, high=3 * across // 4, rho=rho, mu=MU, B=100 / 7, B2=100 * rho / 7, down=-EXCESS / 2, up=EXCESS / 2)
+    return TWO_FLUIDS.format(across=across, low=across // 4, high=3 * across // 4, rho=rho, mu=MU, B=100 / 7,
+                             B2=100 * rho / 7, down=-EXCESS / 2, up=EXCESS / 2)
 
 
 for across in [int(word) for word in sys.argv[1:]] or [16, 32]:
     time = {16: 9}.get(across, 14 * (across / 32) ** 0.5)
     sharp, blurred = theory(across, False)[0], theory(across, True)[0]
     found = growth(suspension(across), across, time)
-    print(f"wavelength {across / 2:g} h: suspension {found:.4f}, {found / sharp:.3f} of theory ({sharp:.4f}), {found / blurred:.3f} of that with the "
-          f"kernel ({blurred:.4f}); two fluids {growth(two_fluids(across), across, time) / sharp:.3f} of theory", flush=True)
+    print(f"wavelength {across / 2:g} h: suspension {found:.4f}, {found / sharp:.3f} of theory ({sharp:.4f}), "
+          f"{found / blurred:.3f} of that with the kernel ({blurred:.4f}); "
+          f"two fluids {growth(two_fluids(across), across, time) / sharp:.3f} of theory", flush=True)

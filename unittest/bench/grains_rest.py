@@ -2,10 +2,12 @@
 """A tank at rest for many steps, of plain water and with a bed of grains: kinetic energy, and the level of the water.
 
     . build/env.sh
-    unittest/bench/grains_rest.py [--steps 100000] [--tank water|bed|both]     # both: a quarter of an hour on a free core
+    unittest/bench/grains_rest.py [--steps 100000] [--tank water|bed|both]
+        both: a quarter of an hour on a free core
 
-The tank is that of test_a_bed_in_a_tank_stays_at_rest: 6 x 6 spacings, 12 deep, grains of 1 spacing, phi 0.5, at random and held. The level is the mean of
-nine probes and of a tenth of the run; beside it stands the height of the volumes of all water, m/(rho (1 - phi)), over the area.
+The tank is that of test_a_bed_in_a_tank_stays_at_rest: 6 x 6 spacings, 12 deep, grains of 1 spacing, phi 0.5, at random
+and held. The level is the mean of nine probes and of a tenth of the run; beside it stands the height of the volumes of
+all water, m/(rho (1 - phi)), over the area.
 """
 import argparse
 import os
@@ -25,12 +27,14 @@ ANY = "create_atoms 2 single 3 3 15.9 units box"     # a grain in the air, for t
 
 
 def tank(bed):
-    return scene((6, 6, 16), 0.3, C, 0.01, "", BED if bed else ANY, 1.0, "p p f", gravity=f"0 0 {-G}", floor=4, mover="",
-                 pair="central artVisc 0.1 0 0.04 shift yes",
-                 before_fix=f"fix down water gravity {G} vector 0 0 -1\nvariable rho atom (1+7*{G}*(12-z)/{C * C})^(1/7)\n"
+    return scene((6, 6, 16), 0.3, C, 0.01, "", BED if bed else ANY, 1.0, "p p f", gravity=f"0 0 {-G}", floor=4,
+                 mover="", pair="central artVisc 0.1 0 0.04 shift yes",
+                 before_fix=f"fix down water gravity {G} vector 0 0 -1\n"
+                            f"variable rho atom (1+7*{G}*(12-z)/{C * C})^(1/7)\n"
                             "set group sph sph/rho v_rho\nset group sph mass v_rho\n"
                             + "displace_atoms grains random 0.2 0.2 0.2 77 units box\n" * bed
-                            + f"compute level sph sph/probe {PROBES}\nvariable level equal ave(c_level)\ncompute k water ke\n")
+                            + f"compute level sph sph/probe {PROBES}\nvariable level equal ave(c_level)\n"
+                              "compute k water ke\n")
 
 
 def print_rows(bed, steps):

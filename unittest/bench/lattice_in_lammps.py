@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""22 x 22 x 22 touching spheres in a LAMMPS run, unit velocity, from zero, relative_tolerance 1e-6: drag, iterations, seconds a
-product, on 1 and 2 ranks, with the diagonal and with the sparse factor.
+"""22 x 22 x 22 touching spheres in a LAMMPS run, unit velocity, from zero, relative_tolerance 1e-6: drag, iterations,
+seconds a product, on 1 and 2 ranks, with the diagonal and with the sparse factor.
 
     . build/env.sh; unittest/bench/lattice_in_lammps.py [SIDE]
 
-Step 0 makes the factor, step 1 keeps it (warm_start no, spheres at rest in their places), so the difference is the set-up.
-Seconds a product: pair time of step 1 over its products, iterations and one check; the vector work and the factor's are in it.
-The known drag is that of libstokes (Ichiki), an independent code, in units of 6 pi eta a U."""
+Step 0 makes the factor, step 1 keeps it (warm_start no, spheres at rest in their places), so the difference is the
+set-up. Seconds a product: pair time of step 1 over its products, iterations and one check; the vector work and the
+factor's are in it. The known drag is that of libstokes (Ichiki), an independent code, in units of 6 pi eta a U."""
 import os
 import re
 import subprocess
@@ -66,7 +66,8 @@ def main():
     side = int(sys.argv[1]) if len(sys.argv) > 1 else 22
     known = KNOWN.get(side)
     print(f"{side}^3 touching spheres; known drag {known}")
-    print(f"{'':18s} {'drag':>12s} {'error':>9s} {'iterations':>10s} {'residual':>9s} {'solve, s':>9s} {'s/product':>10s}")
+    print(f"{'':18s} {'drag':>12s} {'error':>9s} {'iterations':>10s} {'residual':>9s} {'solve, s':>9s} "
+          f"{'s/product':>10s}")
     with tempfile.TemporaryDirectory() as folder:
         for precondition in ("none", "sparse"):
             for ranks in (1, 2):

@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
-"""Spheres as shells of points that settle in a periodic box, in units of T4, the time of an all-pairs product of 10^4 spheres in the
-same minute.
+"""Spheres as shells of points that settle in a periodic box, in units of T4, the time of an all-pairs product of 10^4
+spheres in the same minute.
 
-    . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/multiblob.py [N ... | ranks | drift | formula | models [N ...]]
+    . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/multiblob.py [N ... | ranks | drift | formula | models [N
+    ...]]
 
-Hard spheres of volume fraction 0.3, multiblob 12 with films, to 1e-3: fcc melted by stiff repulsion. A product is the difference of
-steps with 1 and with 1 + MORE products over MORE, vectors of the loop included, in single precision as in a solve to 1e-3; set-up is what a
-step of one product takes beyond it.
-Cold: the first step; run: the mean of STEPS steps in which the spheres move by about 0.01 of a radius against each other. Error: of
-all velocities, against 1e-6. Processor time. ranks: N = 10^4 on one and two ranks in turn, time of the clock. drift: 10^4 steps of 108
-spheres in steady shear, products and smallest gap of each thousand. formula: 864 spheres in a fluid at rest and in one whose velocity
-two variables give, in turn. models: a step in a run of every model over one of one point per sphere, with the same steps."""
+Hard spheres of volume fraction 0.3, multiblob 12 with films, to 1e-3: fcc melted by stiff repulsion. A product is the
+difference of steps with 1 and with 1 + MORE products over MORE, vectors of the loop included, in single precision as in
+a solve to 1e-3; set-up is what a step of one product takes beyond it. Cold: the first step; run: the mean of STEPS
+steps in which the spheres move by about 0.01 of a radius against each other. Error: of all velocities, against 1e-6.
+Processor time. ranks: N = 10^4 on one and two ranks in turn, time of the clock. drift: 10^4 steps of 108 spheres in
+steady shear, products and smallest gap of each thousand. formula: 864 spheres in a fluid at rest and in one whose
+velocity two variables give, in turn. models: a step in a run of every model over one of one point per sphere, with the
+same steps."""
 import os
 import subprocess
 import sys
@@ -46,7 +48,8 @@ unfix heat
 velocity all set 0 0 0
 """
 
-STYLE = "pair_style stokes_dynamics cut_off_distance inf visc {eta:.17g} algorithm 2 multiblob 12 lubrication yes {words}"
+STYLE = ("pair_style stokes_dynamics cut_off_distance inf visc {eta:.17g} algorithm 2 multiblob 12 "
+         "lubrication yes {words}")
 
 PROGRAM = """
 import sys, time, resource
@@ -101,7 +104,8 @@ for _ in range(steps):
     run += clocked("run 1 pre no post no") / steps
     warm.append(fix(3))
 if first:
-    print(product, one - product, cold, products, run, np.mean(warm), off, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6)
+    print(product, one - product, cold, products, run, np.mean(warm), off,
+          resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6)
 lmp.close()
 lmp.finalize()
 """
@@ -111,12 +115,14 @@ def settle(cells, ranks=1, clock="process_time", error=True):
     """Seconds of a product, of the set-up, of a cold step, its products; of a step in a run, its products; error, GB"""
     with tempfile.TemporaryDirectory() as folder:
         with open(os.path.join(folder, "in"), "w") as out:
-            out.write(MELT.format(density=0.3 / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=cells, melt=3000 if cells < 20 else 600))
+            out.write(MELT.format(density=0.3 / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=cells,
+                                  melt=3000 if cells < 20 else 600))
         style = STYLE.format(eta=1 / (6 * np.pi), words="").split(maxsplit=1)[1]
         run = mpirun(ranks)
         words = [f"{folder}/in", style, clock, str(STEPS), str(MORE), "error" if error else "none"]
-        out = subprocess.run(run + [sys.executable, "-c", PROGRAM] + words, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                             env=environment() | {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]}, text=True).stdout.split()
+        out = subprocess.run(run + [sys.executable, "-c", PROGRAM] + words, check=True, stdout=subprocess.PIPE,
+                             stderr=subprocess.DEVNULL, env=environment() |
+                             {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]}, text=True).stdout.split()
         return [float(word) for word in out[-8:]]
 
 
@@ -157,8 +163,8 @@ def drift():
         products, gaps = np.loadtxt(f"{folder}/out").T
         for k in range(0, len(products) - 99, 100):
             rows = slice(k, k + 100)
-            print(f"steps {10 * (k + 100):6d}: products {products[rows].mean():.2f}, at most {products[rows].max():.0f},"
-                  f" smallest gap {gaps[rows].min():.2g}")
+            print(f"steps {10 * (k + 100):6d}: products {products[rows].mean():.2f}, "
+                  f"at most {products[rows].max():.0f}, smallest gap {gaps[rows].min():.2g}")
 
 
 FORMULA = """
@@ -209,7 +215,8 @@ lmp.commands_string(open(sys.argv[1]).read())
 lmp.commands_string("fix load all addforce 0 0 -1.0\\nfix move all stokes_dynamics/overdamped")
 many = lmp.get_natoms() > 50000
 for words in sys.argv[3:]:
-    lmp.commands_string(f"pair_style stokes_dynamics cut_off_distance inf visc {sys.argv[2]} relative_tolerance 1e-3 {words}\\n"
+    lmp.commands_string(f"pair_style stokes_dynamics cut_off_distance inf visc {sys.argv[2]} "
+                        f"relative_tolerance 1e-3 {words}\\n"
                         "pair_coeff * *\\ntimestep 1e-9\\nrun 0 post no")
     v = np.array(lmp.numpy.extract_atom("v"))[:lmp.extract_global("nlocal")]
     lmp.commands_string(f"timestep {0.01 / np.std(v)}\\nrun 3 post no")
@@ -229,11 +236,14 @@ def models():
         for phi in (0.1, 0.3, 0.45) if n < 5000 else (0.3,):
             with tempfile.TemporaryDirectory() as folder:
                 with open(os.path.join(folder, "in"), "w") as out:
-                    out.write(MELT.format(density=phi / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=cells, melt=2000 if n < 50000 else 500))
-                out = subprocess.run([sys.executable, "-c", STEPS_OF, f"{folder}/in", repr(1 / (6 * np.pi))] + names, check=True, text=True,
-                                     stdout=subprocess.PIPE, env=environment() | {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]})
+                    out.write(MELT.format(density=phi / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=cells,
+                                          melt=2000 if n < 50000 else 500))
+                out = subprocess.run([sys.executable, "-c", STEPS_OF, f"{folder}/in", repr(1 / (6 * np.pi))] + names,
+                                     check=True, text=True, stdout=subprocess.PIPE,
+                                     env=environment() | {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]})
             times = [float(word) for word in out.stdout.split()]
-            print(f"{4 * cells**3:<7} {phi:<5} {1e3 * times[0]:7.2f}  " + " ".join(f"{t / times[0]:6.1f}" for t in times[1:]), flush=True)
+            print(f"{4 * cells**3:<7} {phi:<5} {1e3 * times[0]:7.2f}  " +
+                  " ".join(f"{t / times[0]:6.1f}" for t in times[1:]), flush=True)
 
 
 def main():
@@ -246,8 +256,8 @@ def main():
         cells = round((n / 4)**(1 / 3))
         t4 = measure(10000, "f f f", "far_field direct")[0]
         product, setup, cold, products, run, warm, off, memory = settle(cells, error=n < 50000)
-        print(f"{4 * cells**3:<7} {product / t4:9.2f} {setup / t4:9.2f} {cold / t4:9.2f} ({products:.0f}) {run / t4:13.2f} ({warm:.1f})"
-              f"  {off:9.1e} {memory:7.2f}   ({t4:.4f})", flush=True)
+        print(f"{4 * cells**3:<7} {product / t4:9.2f} {setup / t4:9.2f} {cold / t4:9.2f} ({products:.0f}) "
+              f"{run / t4:13.2f} ({warm:.1f})  {off:9.1e} {memory:7.2f}   ({t4:.4f})", flush=True)
 
 
 if __name__ == "__main__":

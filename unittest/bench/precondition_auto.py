@@ -3,9 +3,9 @@
 
     . build/env.sh; unittest/bench/precondition_auto.py [--repeat N] [SCENE ...]
 
-The ways take turns, so that a loaded machine slows all; best of N runs. "Latest": time of the second half of the run alone,
-when the first factor is made. Spheres of cold scenes rest and every solve starts from zero; those of warm scenes fall, freely, and
-solves start from the last ones."""
+The ways take turns, so that a loaded machine slows all; best of N runs. "Latest": time of the second half of the run
+alone, when the first factor is made. Spheres of cold scenes rest and every solve starts from zero; those of warm scenes
+fall, freely, and solves start from the last ones."""
 import argparse
 import os
 import re
@@ -49,7 +49,8 @@ SCENES = {
     "lattice 10^3, cold, 1e-6, rotation": (lambda: lattice(10, (0.4, 0.2, 0.1)), "cold", 1e-6, "yes", 60, "sparse"),
     "cloud 10^3, phi 0.43, warm, 1e-3": (lambda: falling(loose_lattice(10)), "warm", 1e-3, "no", 300, "sparse"),
     "cloud 10^3, phi 0.43, warm, 1e-6": (lambda: falling(loose_lattice(10)), "warm", 1e-6, "no", 120, "sparse"),
-    "cloud 10^3, phi 0.43, warm, 1e-6, rotation": (lambda: falling(loose_lattice(10)), "warm", 1e-6, "yes", 60, "sparse"),
+    "cloud 10^3, phi 0.43, warm, 1e-6, rotation": (lambda: falling(loose_lattice(10)), "warm", 1e-6, "yes", 60,
+                                                   "sparse"),
     "dilute 1000, phi 0.02, cold, 1e-2": (dilute, "cold", 1e-2, "no", 60, "sparse"),
     "dilute 1000, phi 0.02, cold, 1e-6": (dilute, "cold", 1e-6, "no", 60, "sparse"),
     "50 flocs x 20, cold, 1e-6": (lambda: flocs(50, 20, 34.7 * A), "cold", 1e-6, "no", 30, "clump"),
@@ -93,7 +94,8 @@ def main():
     parser.add_argument("--repeat", type=int, default=2)
     parser.add_argument("scene", nargs="*", help="words of the names of scenes; all without")
     args = parser.parse_args()
-    print("| scene | iterations none | with | auto | ms a solve, none | with | auto | latest, none | with | auto | auto over the best |")
+    print("| scene | iterations none | with | auto | ms a solve, none | with | auto | latest, none | with | auto |"
+          " auto over the best |")
     print("|---|" + "---:|" * 10)
     for name, (make, start, tolerance, rotation, steps, rival) in SCENES.items():
         if args.scene and not any(word in name for word in args.scene):
@@ -108,8 +110,9 @@ def main():
                     before = best.get(way, (np.inf, np.inf, its))
                     best[way] = (min(whole, before[0]), min(latest, before[1]), its)
         n, r, a = (best[way] for way in ("none", rival, "auto"))
-        print(f"| {name} ({rival}) | {n[2]:.1f} | {r[2]:.1f} | {a[2]:.1f} | {1e3 * n[0]:.3f} | {1e3 * r[0]:.3f} | {1e3 * a[0]:.3f} | "
-              f"{1e3 * n[1]:.3f} | {1e3 * r[1]:.3f} | {1e3 * a[1]:.3f} | {a[1] / min(n[1], r[1]):.2f} |", flush=True)
+        print(f"| {name} ({rival}) | {n[2]:.1f} | {r[2]:.1f} | {a[2]:.1f} | {1e3 * n[0]:.3f} | {1e3 * r[0]:.3f} |"
+              f" {1e3 * a[0]:.3f} | {1e3 * n[1]:.3f} | {1e3 * r[1]:.3f} | {1e3 * a[1]:.3f} |"
+              f" {a[1] / min(n[1], r[1]):.2f} |", flush=True)
 
 
 if __name__ == "__main__":

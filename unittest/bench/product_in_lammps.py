@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Rate of the all-pairs product inside a LAMMPS run, on 1 and 2 ranks, against the bare kernel of the core: 10 000 polydisperse
-spheres, forces alone and with torques (rotation yes), max_iter 1.
+"""Rate of the all-pairs product inside a LAMMPS run, on 1 and 2 ranks, against the bare kernel of the core: 10 000
+polydisperse spheres, forces alone and with torques (rotation yes), max_iter 1.
 
-    cmake --build build --target bench_product; . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/product_in_lammps.py [REPEATS]
+    cmake --build build --target bench_product; . build/env.sh; OPENBLAS_NUM_THREADS=1
+    unittest/bench/product_in_lammps.py [REPEATS]
 
-The pair time of the log holds all that a step of the pair style does. A solve of one iteration from zero has two products, that
-of the iteration and that of the residual checked at its end. Kernel, 1 rank and 2 ranks take turns; medians of the repeats."""
+The pair time of the log holds all that a step of the pair style does. A solve of one iteration from zero has two
+products, that of the iteration and that of the residual checked at its end. Kernel, 1 rank and 2 ranks take turns;
+medians of the repeats."""
 import os
 import re
 import subprocess
@@ -34,7 +36,8 @@ def pair_time(folder, ranks, rotation):
     with open(data, "w") as out:
         out.write(f"spheres\n\n{N} atoms\n1 atom types\n\n")
         out.write("".join(f"0 {side:.17g} {c}lo {c}hi\n" for c in "xyz"))
-        out.write("\nAtoms\n\n" + "".join(f"{i + 1} 1 {2 * a[i]} 1.0 {x[i][0]} {x[i][1]} {x[i][2]}\n" for i in range(N)))
+        out.write("\nAtoms\n\n" + "".join(f"{i + 1} 1 {2 * a[i]} 1.0 {x[i][0]} {x[i][1]} {x[i][2]}\n"
+                                          for i in range(N)))
         out.write("\nVelocities\n\n" + "".join(f"{i + 1} {v[i][0]} {v[i][1]} {v[i][2]} 0 0 0\n" for i in range(N)))
     with open(os.path.join(folder, "in"), "w") as out:
         out.write(f"""units lj
@@ -69,10 +72,12 @@ def main():
         for _ in range(repeats):
             bare = kernel()
             for rotation, ranks in cases:
-                rate[rotation, ranks].append(2 * N * N / pair_time(folder, ranks, rotation) if ranks else bare[rotation])
+                rate[rotation, ranks].append(2 * N * N / pair_time(folder, ranks, rotation) if ranks
+                                             else bare[rotation])
     print(f"{'':34s} {'G pairs/s':>10s} {'of kernel':>10s} {'of 1 rank':>10s}")
     for rotation, ranks in cases:
-        name = ("forces and torques" if rotation == "yes" else "forces") + (f", {ranks} rank(s)" if ranks else ", bare kernel")
+        name = (("forces and torques" if rotation == "yes" else "forces") +
+                (f", {ranks} rank(s)" if ranks else ", bare kernel"))
         now, bare, one = (np.median(rate[rotation, r]) for r in (ranks, 0, 1))
         print(f"{name:34s} {1e-9 * now:10.3f} {now / bare:10.2f} " + (f"{now / one:10.2f}" if ranks else ""))
 

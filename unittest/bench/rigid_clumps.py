@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Cost of rigid_clumps: processor time of pair style and drag fix a sphere and step, against the same run with Stokes drag alone.
+"""Cost of rigid_clumps: processor time of pair style and drag fix a sphere and step, against the same run with Stokes
+drag alone.
 
     rigid_clumps.py [--clumps N] [--steps N] [--repeat N] [--memory]
 
-N clumps of ten spheres (10 000) fall at their settling velocity, each turned in its own way, as rigid bodies on one core
-(in.rigid_clumps). For each model the median of `repeat` runs (5), the models in turn, so that a disturbance of the machine meets
-all of them. Times are LAMMPS's own (timer full: wall time times share of the processor): Pair, the section of the pair style, and
-Modify, which is mostly fix rigid/small.
-The rivals are
+N clumps of ten spheres (10 000) fall at their settling velocity, each turned in its own way, as rigid bodies on one
+core (in.rigid_clumps). For each model the median of `repeat` runs (5), the models in turn, so that a disturbance of the
+machine meets all of them. Times are LAMMPS's own (timer full: wall time times share of the processor): Pair, the
+section of the pair style, and Modify, which is mostly fix rigid/small. The rivals are
   Stokes drag, this style   cut_off_distance below the distance of neighbours: no interactions; with and without torques
   Stokes drag, fix viscous  the cheapest drag there is: f = -k v, equal spheres
 --memory: largest memory of a run of 100 000 clumps with shell 162 instead, one step.
@@ -80,7 +80,8 @@ def main():
         for _ in range(options.repeat):
             for name, words in MODELS.items():
                 log = run(words, n, options.steps, folder)
-                times[name].append([section(log, part) / (options.steps * spheres) * 1e9 for part in ("Pair", "Modify")])
+                times[name].append([section(log, part) / (options.steps * spheres) * 1e9
+                                    for part in ("Pair", "Modify")])
     # fix viscous is part of Modify; the rest of that section is the same in all runs
     medians = {name: [statistics.median(t[k] for t in all_) for k in (0, 1)] for name, all_ in times.items()}
     pair, both = medians[REFERENCE][0], sum(medians[REFERENCE])
@@ -90,8 +91,8 @@ def main():
     print("|---|---:|---:|---:|---:|---:|---:|---:|")
     bare = sum(medians["Stokes drag, fix viscous"])
     for name, (p, m) in medians.items():
-        print(f"| {name} | {p:.0f} | {m:.0f} | {p + m:.0f} | {p / pair:.2f} | {(p + m) / both:.2f} | {(p + m) / bare:.2f} |"
-              f" {ERROR.get(name, '')} |")
+        print(f"| {name} | {p:.0f} | {m:.0f} | {p + m:.0f} | {p / pair:.2f} | {(p + m) / both:.2f} |"
+              f" {(p + m) / bare:.2f} | {ERROR.get(name, '')} |")
     return 0
 
 

@@ -4,13 +4,15 @@
     . build/env.sh && unittest/bench/scaling.py [--spheres 10000 100000] [--ranks 1 2 4 8 16 32] [--films] [--multiblob]
         [--link 2 10]
 
-A periodic box of spheres (volume fraction 0.1) that settle without inertia, tolerances 1e-3. Of the ranks the one with most:
-memory beyond that of LAMMPS without the style; messages, bytes and collective calls of a step beyond LAMMPS's; and the ranks
-that it speaks with. From runs of 1 and of 3 steps, whose difference is two steps; counts by count_messages.c under MPI.
+A periodic box of spheres (volume fraction 0.1) that settle without inertia, tolerances 1e-3. Of the ranks the one with
+most: memory beyond that of LAMMPS without the style; messages, bytes and collective calls of a step beyond LAMMPS's;
+and the ranks that it speaks with. From runs of 1 and of 3 steps, whose difference is two steps; counts by
+count_messages.c under MPI.
 
-On paper: what that would take on a network where a message takes --link microseconds, and a byte 1/so many GB/s: the messages
-one after the other, all bytes, and collective calls as log2(ranks) messages. Beside it --step seconds of one rank (of each scene,
-as they are printed), shared evenly: where the first is as long as the second, ranks wait for messages."""
+On paper: what that would take on a network where a message takes --link microseconds, and a byte 1/so many GB/s: the
+messages one after the other, all bytes, and collective calls as log2(ranks) messages. Beside it --step seconds of one
+rank (of each scene, as they are printed), shared evenly: where the first is as long as the second, ranks wait for
+messages."""
 import argparse
 import os
 import re
@@ -42,14 +44,17 @@ def write_data(path, x, box):
 
 
 def script(data, words, steps):
-    style = f"pair_style stokes_dynamics {words}\nfix move all stokes_dynamics/overdamped" if words else "pair_style zero 2\n"
-    return (f"units lj\natom_style sphere\nboundary p p p\nplugin load stokesdynplugin.so\nread_data {data}\n{style}\npair_coeff * *\n"
+    style = (f"pair_style stokes_dynamics {words}\nfix move all stokes_dynamics/overdamped" if words
+             else "pair_style zero 2\n")
+    return (f"units lj\natom_style sphere\nboundary p p p\nplugin load stokesdynplugin.so\nread_data {data}\n{style}\n"
+            "pair_coeff * *\n"
             f"fix pull all addforce 0 0 -1\ntimestep 0.01\nthermo 1000\nrun {steps}\n")
 
 
 def count(folder, library, data, words, steps, ranks):
     (folder / "in").write_text(script(data, words, steps))
-    run = subprocess.run(["mpirun", "--oversubscribe", "-np", str(ranks), "-x", f"LD_PRELOAD={library}", "lmp", "-in", "in", "-log", "none"],
+    run = subprocess.run(["mpirun", "--oversubscribe", "-np", str(ranks), "-x", f"LD_PRELOAD={library}", "lmp", "-in",
+                          "in", "-log", "none"],
                          cwd=folder, capture_output=True, text=True)
     found = re.search(r"^COUNTED (.*)$", run.stdout, re.M)
     memory = re.search(r"\(min/avg/max\) = \S+ \| \S+ \| (\S+) Mbytes", run.stdout)
@@ -79,7 +84,8 @@ def main():
         folder = Path(name)
         library = folder / "count_messages.so"
         subprocess.run(["mpicc", "-O2", "-shared", "-fPIC", HERE / "count_messages.c", "-o", library], check=True)
-        print("spheres scene  ranks  memory/MB  messages/step  MB/step  collectives/step  MB/step  partners  paper/ms  work/ms")
+        print("spheres scene  ranks  memory/MB  messages/step  MB/step  collectives/step  MB/step  partners  "
+              "paper/ms  work/ms")
         for n in asked.spheres:
             data = folder / "data"
             write_data(data, *positions(n, np.random.default_rng(1)))
@@ -89,8 +95,9 @@ def main():
                 for k, (scene, words) in enumerate(scenes):
                     one, three = [count(folder, library, data, words, steps, ranks) for steps in (1, 3)]
                     step = (three - one - (without[1] - without[0])) / 2
-                    print(f"{n:7} {scene:6} {ranks:5} {(one - without[0])[0] / 2 ** 20:10.1f} {step[1]:14.0f} {step[2] / 2 ** 20:8.2f} "
-                          f"{step[3]:17.0f} {step[4] / 2 ** 20:8.3f} {one[5]:9.0f} {on_paper(step, ranks, asked.link):9.2f} "
+                    print(f"{n:7} {scene:6} {ranks:5} {(one - without[0])[0] / 2 ** 20:10.1f} {step[1]:14.0f} "
+                          f"{step[2] / 2 ** 20:8.2f} {step[3]:17.0f} {step[4] / 2 ** 20:8.3f} {one[5]:9.0f} "
+                          f"{on_paper(step, ranks, asked.link):9.2f} "
                           + (f"{1e3 * asked.step[k] / ranks:8.1f}" if k < len(asked.step) else ""), flush=True)
 
 

@@ -82,8 +82,8 @@ def draw(rows, others):
         for program, box in sorted({(row["program"], row["box"]) for row in others}):
             chosen = [row for row in others if (row["program"], row["box"], row["spheres"]) == (program, box, str(n))]
             panel.loglog([float(row["error"]) for row in chosen], [1e6 * float(row["seconds"]) / n for row in chosen],
-                         MARKS[program], color="tab:purple" if box == "open" else "tab:gray", markersize=7, linestyle=":",
-                         label=f"{program}, {box}" if n == spheres[0] else None)
+                         MARKS[program], color="tab:purple" if box == "open" else "tab:gray", markersize=7,
+                         linestyle=":", label=f"{program}, {box}" if n == spheres[0] else None)
         panel.set(title=f"{n} spheres", xlabel="error of a product")
         panel.grid(alpha=0.3)
     panels[0][0].set_ylabel("time of a product per sphere / µs")

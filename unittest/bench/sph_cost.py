@@ -4,10 +4,11 @@
     . build/env.sh
     /usr/bin/python3 unittest/bench/sph_cost.py [--repeat 5] [--steps 50] [--ranks] [--only WORDS]
 
-64 000 particles on a cubic lattice of 40^3, displaced by up to 5 %, support 2.4 spacings (57 neighbours, each particle counted), skin 0.2
-spacings, periodic. Every repetition runs the rival and all of ours one after the other, so that a busy machine slows all alike; the
-table has the median of the ratios, of processor time on one rank. The error is the largest difference of static forces from an evaluation
-in numpy of the random scene in unittest/data/sph, over the largest force. --ranks: 1 and 2 ranks instead.
+64 000 particles on a cubic lattice of 40^3, displaced by up to 5 %, support 2.4 spacings (57 neighbours, each particle
+counted), skin 0.2 spacings, periodic. Every repetition runs the rival and all of ours one after the other, so that a
+busy machine slows all alike; the table has the median of the ratios, of processor time on one rank. The error is the
+largest difference of static forces from an evaluation in numpy of the random scene in unittest/data/sph, over the
+largest force. --ranks: 1 and 2 ranks instead.
 """
 import argparse
 import os
@@ -53,9 +54,10 @@ CASES = {"sph/taitwater, fix sph": RIVAL}
 for kernel in ("wendland", "cubicspline"):
     for name, terms in (("plain", ""), ("artVisc + tensCorr", BOTH)):
         for integrator in ("nve/sph", "sph"):
-            CASES["%s, %s, fix %s" % (kernel, name, integrator)] = OURS.format(kernel=kernel, terms=terms, integrator=integrator,
-                                                                              density="")
-for name, terms, density in (("artVisc", "", ""), ("artVisc + delta", "", "delta 0.1"), ("artVisc + delta + shift", "shift yes", "delta 0.1"),
+            CASES["%s, %s, fix %s" % (kernel, name, integrator)] = OURS.format(kernel=kernel, terms=terms,
+                                                                               integrator=integrator, density="")
+for name, terms, density in (("artVisc", "", ""), ("artVisc + delta", "", "delta 0.1"),
+                             ("artVisc + delta + shift", "shift yes", "delta 0.1"),
                              ("artVisc + delta + pliant shift", "shift pliant", "delta 0.1"),
                              ("artVisc + delta + correction", "correction yes", "delta 0.1")):
     CASES["wendland, %s, fix nve/sph" % name] = OURS.format(kernel="wendland", terms="artVisc 0.1 0 1.44e-6 " + terms,
@@ -70,7 +72,8 @@ def seconds(script, steps, ranks, folder):
     if os.getuid() == 0:
         env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     mpi = [shutil.which("mpirun.openmpi") or "mpirun", "-np", str(ranks)] if ranks > 1 else []
-    out = subprocess.run(mpi + ["lmp", "-in", path, "-log", "none", "-nocite"], cwd=folder, env=env, capture_output=True, text=True).stdout
+    out = subprocess.run(mpi + ["lmp", "-in", path, "-log", "none", "-nocite"], cwd=folder, env=env,
+                         capture_output=True, text=True).stdout
     times, used = re.findall(r"Loop time of ([0-9.e+-]+)", out), re.findall(r"([0-9.]+)% CPU use", out)
     if len(times) != 2:
         sys.exit("the run failed:\n" + out[-2000:])
@@ -103,25 +106,29 @@ def main():
         del CASES[name]
     with tempfile.TemporaryDirectory() as folder:
         if options.ranks:
-            print("| case | 1 rank, us per particle and step | 2 ranks | speed-up (median of %d) |\n|---|---|---|---|" % options.repeat)
+            print("| case | 1 rank, us per particle and step | 2 ranks | speed-up (median of %d) |\n|---|---|---|---|" %
+                  options.repeat)
             for name in [n for n in CASES if n.endswith("nve/sph")] + ["sph/taitwater, fix sph"]:
-                times = [(seconds(CASES[name], options.steps, 1, folder), seconds(CASES[name], options.steps, 2, folder))
+                times = [(seconds(CASES[name], options.steps, 1, folder),
+                          seconds(CASES[name], options.steps, 2, folder))
                          for _ in range(options.repeat)]
                 one, two = (statistics.median(t[k] for t in times) * per for k in (0, 1))
-                print("| %s | %.3f | %.3f | %.2f |" % (name, one, two, statistics.median(t[0] / t[1] for t in times)), flush=True)
+                print("| %s | %.3f | %.3f | %.2f |" % (name, one, two, statistics.median(t[0] / t[1] for t in times)),
+                      flush=True)
             return
         times = {name: [] for name in CASES}
         for _ in range(options.repeat):
             for name in CASES:
                 times[name].append(seconds(CASES[name], options.steps, 1, folder))
         rival = times["sph/taitwater, fix sph"]
-        print("| case | us per particle and step | over the rival (median of %d; least, most) | error of the forces |\n|---|---|---|---|" %
+        print("| case | us per particle and step | over the rival (median of %d; least, most) | error of the forces |\n"
+              "|---|---|---|---|" %
               options.repeat)
         for name in CASES:
             ratios = sorted(mine / theirs for mine, theirs in zip(times[name], rival))
             error = "" if name.startswith("sph") else "%.0e" % force_error(name.split(",")[0], "artVisc" in name)
-            print("| %s | %.3f | %.2f (%.2f, %.2f) | %s |" % (name, statistics.median(times[name]) * per, statistics.median(ratios), ratios[0],
-                                                           ratios[-1], error))
+            print("| %s | %.3f | %.2f (%.2f, %.2f) | %s |" % (name, statistics.median(times[name]) * per,
+                                                              statistics.median(ratios), ratios[0], ratios[-1], error))
 
 
 if __name__ == "__main__":

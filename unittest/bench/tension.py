@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
-"""Rows of doc/fix_sph_tension.md that are too long for a test: drops that rest and ring, contact angles, capillary pressure, cost.
+"""Rows of doc/fix_sph_tension.md that are too long for a test: drops that rest and ring, contact angles, capillary
+pressure, cost.
 
     . build/env.sh
-    unittest/bench/tension.py ring 20 0.01       # 2-D, particles across, Ohnesorge number: pressure, frequency and damping over exact
-    unittest/bench/tension.py calm 20 4711       # 2-D, Ohnesorge number 0.001, lattice disturbed by this seed: extrema of 20 time units
+    unittest/bench/tension.py ring 20 0.01       # 2-D, particles across, Ohnesorge number: pressure, frequency,
+                                                 # damping over exact
+    unittest/bench/tension.py calm 20 4711       # 2-D, Ohnesorge number 0.001, lattice disturbed by this seed:
+                                                 # extrema of 20 time units
     unittest/bench/tension.py ball 20            # 3-D: pressure, frequency, damping at 0.05
-    unittest/bench/tension.py cap 20 60          # 3-D: contact angle on a plane, from the height of the centre of mass and of the top
+    unittest/bench/tension.py cap 20 60          # 3-D: contact angle on a plane, from the height of the centre of mass
+                                                 # and of the top
     unittest/bench/tension.py slot 20 60         # 2-D: capillary pressure between two plates, over exact
     unittest/bench/tension.py cost               # processor time of a step over that of one without the fix
 
@@ -57,7 +61,8 @@ def calm(across, seed):
     q -= q.mean()
     peaks = [v for a, v, b in zip(q, q[1:], q[2:]) if v > a and v >= b and v > 0.01]
     x = by_id(lmp, "x", 3)
-    print(f"{across} across, Ohnesorge number 0.001, seed {seed}: pressure {p:.3f}, maxima " + " ".join(f"{v:.4f}" for v in peaks) +
+    print(f"{across} across, Ohnesorge number 0.001, seed {seed}: pressure {p:.3f}, maxima " +
+          " ".join(f"{v:.4f}" for v in peaks) +
           f"; drops {lmp.extract_fix('t', 0, 1, 3):.0f}, centre {np.abs(x.mean(0)).max():.4f}")
 
 
@@ -73,7 +78,8 @@ def ball(across):
         rows.append(((k + 1) * 20 * dt, (x[:, 0] ** 2 - 0.5 * (x[:, 1] ** 2 + x[:, 2] ** 2)).mean()))
     w0, g0 = (8 / R**3 - (0.25 / R**2) ** 2) ** 0.5, 0.25 / R**2
     w, g = fitted(*np.array(rows).T, w0, g0)
-    print(f"3-D, {across} across, Ohnesorge number 0.05: pressure {p:.3f}, frequency {w / w0:.3f}, damping {g / g0:.3f} (of little viscosity)")
+    print(f"3-D, {across} across, Ohnesorge number 0.05: pressure {p:.3f}, frequency {w / w0:.3f}, "
+          f"damping {g / g0:.3f} (of little viscosity)")
 
 
 WALLED = """
@@ -120,10 +126,10 @@ create_atoms 2 region plates"""
 
 def walled(dim, dx, c, angle, atoms):
     flat = dim == 2
-    return WALLED.format(dim=dim, third="p" if flat else "f", lattice="sq" if flat else "sc", density=dx**-dim, middle=0 if flat else 0.5,
-                         low=-5 * dx, deep="-0.01 0.01" if flat else "-2.6 2.6", atoms=atoms, mass=dx**dim, jitter=0.05 * dx,
-                         jitter_z=0 if flat else 0.05 * dx, dx=dx, h=2 * dx, c=c, B=c * c / 7, angle=angle, dt=0.5 * dx / c,
-                         flat="fix flat all enforce2d" if flat else "")
+    return WALLED.format(dim=dim, third="p" if flat else "f", lattice="sq" if flat else "sc", density=dx**-dim,
+                         middle=0 if flat else 0.5, low=-5 * dx, deep="-0.01 0.01" if flat else "-2.6 2.6", atoms=atoms,
+                         mass=dx**dim, jitter=0.05 * dx, jitter_z=0 if flat else 0.05 * dx, dx=dx, h=2 * dx, c=c,
+                         B=c * c / 7, angle=angle, dt=0.5 * dx / c, flat="fix flat all enforce2d" if flat else "")
 
 
 def means(text, time, dt, *of):
@@ -141,12 +147,15 @@ def means(text, time, dt, *of):
 def cap(across, angle, time=7.0):
     dx, c = 2 / int(across), 20.0
     text = walled(3, dx, c, angle, CAP.format(wide=2.0 if float(angle) < 60 else 1.8, under=-4 * dx))
-    (middle, top), count = means(text, time, 0.5 * dx / c, lambda x, rho: x[:, 1].mean(), lambda x, rho: x[:, 1].max() + dx / 2)
+    (middle, top), count = means(text, time, 0.5 * dx / c, lambda x, rho: x[:, 1].mean(),
+                                 lambda x, rho: x[:, 1].max() + dx / 2)
     t = np.radians(np.arange(20.0, 170.0, 0.05))
     R = (count * dx**3 / (np.pi / 3 * (2 + np.cos(t)) * (1 - np.cos(t)) ** 2)) ** (1 / 3)
     h = R * (1 - np.cos(t))
-    by_centre, by_top = np.interp(middle, 0.75 * (2 * R - h) ** 2 / (3 * R - h) - R * np.cos(t), t), np.interp(top, h, t)
-    print(f"3-D, {across} across, angle {angle}: by the centre {np.degrees(by_centre):.1f}, by the top {np.degrees(by_top):.1f} degrees")
+    by_centre, by_top = np.interp(middle, 0.75 * (2 * R - h) ** 2 / (3 * R - h) - R * np.cos(t),
+                                  t), np.interp(top, h, t)
+    print(f"3-D, {across} across, angle {angle}: by the centre {np.degrees(by_centre):.1f}, "
+          f"by the top {np.degrees(by_top):.1f} degrees")
 
 
 def slot(across, angle):
@@ -154,7 +163,8 @@ def slot(across, angle):
     text = walled(2, dx, c, angle, SLOT.format(left=-0.5 - 4 * dx, right=0.5 + 4 * dx, under=-4 * dx))
     where = lambda x: (np.abs(x[:, 0]) < 0.25) & (x[:, 1] > 0.2) & (x[:, 1] < 0.5)      # noqa: E731
     (p,), _ = means(text, 6.0, 0.5 * dx / c, lambda x, rho: (c * c / 7 * (rho**7 - 1))[where(x)].mean())
-    print(f"slot {across} wide, angle {angle}: capillary pressure {p / (-2 * np.cos(np.radians(float(angle)))):.3f} of exact")
+    print(f"slot {across} wide, angle {angle}: capillary pressure {p / (-2 * np.cos(np.radians(float(angle)))):.3f} of "
+          "exact")
 
 
 def cost():
@@ -170,7 +180,8 @@ def cost():
                 with tempfile.NamedTemporaryFile("w", suffix=".in") as f:
                     f.write("plugin load stokesdynplugin.so\n" + scene + f"run 5\nrun {count}\n")
                     f.flush()
-                    out = subprocess.run(["lmp", "-in", f.name, "-log", "none", "-nocite"], capture_output=True, text=True).stdout
+                    out = subprocess.run(["lmp", "-in", f.name, "-log", "none", "-nocite"], capture_output=True,
+                                         text=True).stdout
                 loops = re.findall(r"Loop time of ([0-9.e+-]+) .* with (\d+) atoms", out)
                 seconds.append(float(loops[1][0]) * float(re.findall(r"([0-9.]+)% CPU use", out)[1]))
             ratios.append(seconds[0] / seconds[1])

@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
-"""Spheres of unlike radii whose points go with the radius (multiblob 12), beside 12 points for all (multiblob_most 12): errors and cost.
+"""Spheres of unlike radii whose points go with the radius (multiblob 12), beside 12 points for all (multiblob_most 12):
+errors and cost.
 
     . build/env.sh; unittest/bench/unlike.py [pairs [RATIO ...] | groups | suspensions [SETS] | equal [SETS] | clusters]
 
-pairs: two spheres alone under eleven loads (unlike_pairs.csv), twelve orientations; the worst load's error of the smaller sphere, on the
-scale of its own motion (unittest/lammps/unlike.py): mean over the orientations, worst one. groups: of three and four spheres, the worst
-small one under each kind of load. suspensions: two radii, half and half by
-volume, volume fraction 0.25, periodic: viscosity, settling and self-diffusion of both classes over lone ones, and what they are off 162
-points for all, in per cent of themselves; the settling of small spheres, which is next to nothing, of the lone speed. equal: hard spheres of one radius by shells of any kind, beside the published fits. clusters: those of
-near_contact_clusters.csv, 3 to 27 spheres; radii of 0.6 to 1.6 in some. Cost: processor time of a solve from zero to 1e-3."""
+pairs: two spheres alone under eleven loads (unlike_pairs.csv), twelve orientations; the worst load's error of the
+smaller sphere, on the scale of its own motion (unittest/lammps/unlike.py): mean over the orientations, worst one.
+groups: of three and four spheres, the worst small one under each kind of load. suspensions: two radii, half and half by
+volume, volume fraction 0.25, periodic: viscosity, settling and self-diffusion of both classes over lone ones, and what
+they are off 162 points for all, in per cent of themselves; the settling of small spheres, which is next to nothing, of
+the lone speed. equal: hard spheres of one radius by shells of any kind, beside the published fits. clusters: those of
+near_contact_clusters.csv, 3 to 27 spheres; radii of 0.6 to 1.6 in some. Cost: processor time of a solve from zero to
+1e-3."""
 import csv
 import os
 import pathlib
@@ -44,7 +47,8 @@ def groups():
     for case, (_, a, _) in unlike.GROUPS.items():
         for name, style in (("by radius", BY_RADIUS), ("12 for all", ALIKE)):
             off = unlike.group_errors(unlike.group_motions(simulation, case, style), case)
-            print(f"| {case} | {name} | " + " | ".join(f"{kind} {value[a < 0.99].max():.1f}" for kind, value in off.items()) + " |", flush=True)
+            print(f"| {case} | {name} | " + " | ".join(f"{kind} {value[a < 0.99].max():.1f}"
+                                                       for kind, value in off.items()) + " |", flush=True)
 
 
 def pairs(ratios):
@@ -63,7 +67,8 @@ def pairs(ratios):
 
 
 def packed(a, phi, seed, gap=2e-3):
-    """Places [n, 3] of spheres that do not overlap in a periodic cube, and its edge: pushed apart, then moved at random"""
+    """Places [n, 3] of spheres that do not overlap in a periodic cube, and its edge: pushed apart, then moved at
+    random"""
     rng = np.random.default_rng(seed)
     edge, n = (4 / 3 * np.pi * (a ** 3).sum() / phi) ** (1 / 3), len(a)
     x = rng.uniform(0, edge, (n, 3))
@@ -103,7 +108,8 @@ def measured(lammps, keywords, x, edge, a, classes, probes=6):
 
 def suspensions(sets):
     lammps = InLammps(pathlib.Path(tempfile.mkdtemp()))
-    print("viscosity, settling large, small, D large, small: in the first set; off 162 points for all, mean of the sets, per cent")
+    print("viscosity, settling large, small, D large, small: in the first set; off 162 points for all, "
+          "mean of the sets, per cent")
     for name, large, small, ratio in (("1:2", 10, 80, 2.0), ("1:3", 4, 108, 3.0)):
         a = np.r_[np.ones(large), np.full(small, 1 / ratio)]
         classes, found = (a > 0.99, a < 0.99), {}
@@ -116,7 +122,8 @@ def suspensions(sets):
         for style, rows in found.items():
             off = 100 * (np.array([value for value, _ in rows]) - fine) / np.where(np.arange(5) == 2, 1.0, fine)
             print(f"{name} {style:55s} " + " ".join(f"{v:8.4f}" for v in rows[0][0]) + " | " +
-                  " ".join(f"{v:+6.2f}" for v in off.mean(axis=0)) + " worst " + " ".join(f"{v:5.2f}" for v in np.abs(off).max(axis=0)) +
+                  " ".join(f"{v:+6.2f}" for v in off.mean(axis=0)) + " worst " +
+                  " ".join(f"{v:5.2f}" for v in np.abs(off).max(axis=0)) +
                   f" | {np.median([cost for _, cost in rows]):.2f} s", flush=True)
 
 
@@ -132,10 +139,12 @@ def equal(sets, n=500):
     for phi in (0.3, 0.45, 0.5):
         for k, (x, edge) in enumerate(hard_spheres(n, phi, sets, seed=1 + int(100 * phi))):
             for points in ("12", "42", "42 half", "162"):
-                (eta, K, D), cost = measured(lammps, f"multiblob {points} lubrication yes", x, edge, np.ones(n), (np.ones(n, bool),))
+                (eta, K, D), cost = measured(lammps, f"multiblob {points} lubrication yes", x, edge, np.ones(n),
+                                             (np.ones(n, bool),))
                 waves = 1.7601 * (phi / n) ** (1 / 3) / eta     # longer than the box
                 value = np.array([K + compressibility(phi) * waves, D + waves, eta])
-                print(f"phi {phi}, set {k}, multiblob {points:8s} settling, D, viscosity " + " ".join(f"{v:.4f}" for v in value) + " | off the fits, % " +
+                print(f"phi {phi}, set {k}, multiblob {points:8s} settling, D, viscosity " +
+                      " ".join(f"{v:.4f}" for v in value) + " | off the fits, % " +
                       " ".join(f"{v:+.1f}" for v in 100 * (value / fits(phi) - 1)) + f" | {cost:.2f} s", flush=True)
 
 
@@ -144,7 +153,8 @@ def clusters():
     found = {}
     with open(os.path.join(model.DATA, "motion", "near_contact_clusters.csv")) as lines:
         for row in csv.DictReader(line for line in lines if not line.startswith("#")):
-            found.setdefault((row["case"], row["load"]), []).append([float(row[name]) for name in "x y z a Fx Fy Fz Ux Uy Uz".split()])
+            found.setdefault((row["case"], row["load"]),
+                             []).append([float(row[name]) for name in "x y z a Fx Fy Fz Ux Uy Uz".split()])
     lammps = InLammps(pathlib.Path(tempfile.mkdtemp()))
     for points in ("12", "12 multiblob_most 12", "42", "42 half", "162"):
         off, costs = {}, []
@@ -153,12 +163,16 @@ def clusters():
             unequal = "unlike radii" if np.ptp(rows[:, 3]) > 0.1 else "equal radii"
             began = time.process_time()
             lammps.place(rows[:, :3], f"cut_off_distance inf multiblob {points} lubrication yes", radius=rows[:, 3])
-            v, exact = lammps.velocities(rows[:, 4:7]) / (6 * np.pi), rows[:, 7:]     # 6 pi eta is 1 here, eta in the table
-            off.setdefault((unequal, load.split("_")[0]), []).append((100 * np.linalg.norm(v - exact) / np.linalg.norm(exact), case))
+            # 6 pi eta is 1 here, eta in the table
+            v, exact = lammps.velocities(rows[:, 4:7]) / (6 * np.pi), rows[:, 7:]
+            off.setdefault((unequal, load.split("_")[0]),
+                           []).append((100 * np.linalg.norm(v - exact) / np.linalg.norm(exact), case))
             costs.append(time.process_time() - began)
         for key, values in sorted(off.items()):
             worst = max(values)
-            print(f"multiblob {points:22s} {key[0]}, {key[1]:7s} {len(values):3d}: mean {np.mean([v for v, _ in values]):.2f} %, worst {worst[0]:.2f} ({worst[1]}) | {np.mean(costs):.3f} s", flush=True)
+            print(f"multiblob {points:22s} {key[0]}, {key[1]:7s} {len(values):3d}: "
+                  f"mean {np.mean([v for v, _ in values]):.2f} %, worst {worst[0]:.2f} ({worst[1]}) | "
+                  f"{np.mean(costs):.3f} s", flush=True)
 
 
 if __name__ == "__main__":

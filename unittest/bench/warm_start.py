@@ -3,9 +3,10 @@
 
     . build/env.sh; unittest/bench/warm_start.py
 
-Settling cloud: examples/settling_cloud until time 0.3; error of its speed against the same run at relative_tolerance 1e-9, for
-spheres alone and clumps alone against what they must have. Clouds of 1000: spheres on a given path, 0.01 radii a step, whose
-velocities change by 1 % in some ten steps; error of the forces against a solve to 1e-10, the mean of 60 steps."""
+Settling cloud: examples/settling_cloud until time 0.3; error of its speed against the same run at relative_tolerance
+1e-9, for spheres alone and clumps alone against what they must have. Clouds of 1000: spheres on a given path, 0.01
+radii a step, whose velocities change by 1 % in some ten steps; error of the forces against a solve to 1e-10, the mean
+of 60 steps."""
 import os
 import pathlib
 import subprocess
@@ -33,7 +34,8 @@ def settle(interactions, tolerance="1e-3"):
         subprocess.run(["cp", str(EXAMPLE / "tetrahedron.mol"), folder], check=True)
         variables = {"interactions": interactions, "images": "no", "time": "0.3", "tolerance": tolerance}
         words = [w for name, value in variables.items() for w in ("-var", name, value)]
-        subprocess.run(["lmp", "-in", "in", "-log", "none", "-screen", "none", *words], cwd=folder, env=environment(), check=True)
+        subprocess.run(["lmp", "-in", "in", "-log", "none", "-screen", "none", *words], cwd=folder, env=environment(),
+                       check=True)
         its = np.loadtxt(os.path.join(folder, "its"), ndmin=2)[-1, 1]
         return its, np.loadtxt(os.path.join(folder, "out", f"{interactions}.curve"))[-1, 2]
 

@@ -1,5 +1,5 @@
-/* Reference tables: lines of numbers and names separated by commas, after lines that begin with # and one line of column names.
- * */
+/* Reference tables: lines of numbers and names separated by commas, after lines that begin with # and one line of
+ * column names. */
 #ifndef TABLE_H
 #define TABLE_H
 

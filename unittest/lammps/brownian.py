@@ -80,10 +80,11 @@ TIGHT = " noise_tolerance 3e-12"    # of the root, and of the solve with noise
 def script(folder, way, runs, newton="on", T="v_T", seed=7):
     """way: boundary, scene, words of the pair style, and of the fix"""
     boundary, make, words, options = way
-    lines = input_lines(make(), words, os.path.join(str(folder), "spheres.data"), fix=False, boundary=boundary, newton=newton, dt=0.02,
-                        box=[(0.0, 18.0)] * 3 if boundary[0] == "p" else [(-60.0, 60.0)] * 3)
+    lines = input_lines(make(), words, os.path.join(str(folder), "spheres.data"), fix=False, boundary=boundary,
+                        newton=newton, dt=0.02, box=[(0.0, 18.0)] * 3 if boundary[0] == "p" else [(-60.0, 60.0)] * 3)
     move = MOVE.format(T, seed) + options if T is not None else MOVE.split(" temp")[0] + options.replace(TIGHT, "")
-    return lines + ["variable T equal 1.5+step/100", "variable fx atom 0.3*sin(id)", "fix pull all addforce v_fx 0 -2", move] + runs
+    return lines + ["variable T equal 1.5+step/100", "variable fx atom 0.3*sin(id)", "fix pull all addforce v_fx 0 -2",
+                    move] + runs
 
 
 def end(folder, lines, ranks=1):
@@ -93,12 +94,14 @@ def end(folder, lines, ranks=1):
 
 def ends(folder, inputs):
     """Of several inputs in one start"""
-    lmp_in_turn(folder, [[line.replace("end.dump", f"end.{k}.dump") for line in lines] for k, lines in enumerate(inputs)])
+    lmp_in_turn(folder, [[line.replace("end.dump", f"end.{k}.dump") for line in lines]
+                         for k, lines in enumerate(inputs)])
     return [read_dump(os.path.join(str(folder), f"end.{k}.dump"))[-1][1] for k in range(len(inputs))]
 
 
 END = dump_lines("end.dump", every=20, columns="xu yu zu vx vy vz")
-# velocities beyond that of the fluid: in a box that is sheared LAMMPS adds to v what the other side of a face has more, when it makes its lists
+# velocities beyond that of the fluid: in a box that is sheared LAMMPS adds to v what the other side of a face has more,
+# when it makes its lists
 BEYOND = dump_lines("end.dump", every=20, columns="xu yu zu f_move[1] f_move[2] f_move[3]")
 
 
@@ -108,20 +111,21 @@ def check_same(one, other, of_x, of_v):
 
 
 def check_ranks(folder, way, of_x=1e-10, of_v=1e-10, END=END):
-    one, other, still = ends(folder, [script(folder, way, END + ["run 20"], **how) for how in ({}, {"seed": 8}, {"T": "0"})])
+    one, other, still = ends(folder, [script(folder, way, END + ["run 20"], **how)
+                                      for how in ({}, {"seed": 8}, {"T": "0"})])
     for ranks, newton in allowed((2, "on"), (4, "off")):
         check_same(end(folder, script(folder, way, END + ["run 20"], newton), ranks), one, of_x, of_v)
     assert np.abs(other - one)[:, :3].max() > 0.1 and np.abs(still - one)[:, :3].max() > 0.1
 
 
 def in_pieces(folder, make, END=END):
-    """Ends of a run of 20 steps, of the same in two pieces, and of one that goes on from a restart file. make(lines): the input that ends
-    in these"""
+    """Ends of a run of 20 steps, of the same in two pieces, and of one that goes on from a restart file. make(lines):
+    the input that ends in these"""
     def named(name, runs):
         return make([line.replace("end.dump", f"{name}.dump") for line in END] + runs)
 
-    lmp_in_turn(folder, [named("whole", ["run 20"]), named("two", ["run 7", "run 13"]), make(["run 7", "write_restart half.restart"]),
-                         from_restart(named("again", ["run 13"]))])
+    lmp_in_turn(folder, [named("whole", ["run 20"]), named("two", ["run 7", "run 13"]),
+                         make(["run 7", "write_restart half.restart"]), from_restart(named("again", ["run 13"]))])
     return [read_dump(os.path.join(str(folder), f"{name}.dump"))[-1][1] for name in ("whole", "two", "again")]
 
 
@@ -133,13 +137,14 @@ def check_pieces(folder, way, of_x=1e-10, of_v=1e-10, END=END):
 
 
 def check_heights(simulation, side, model, options):
-    """side^2 spheres apart above a floor, in a trap of 25 kT/a^2 at 1.9 a and with a weight of 0.5 kT/a, stand as Boltzmann says: mean
-    height 1.88 a, sigma 0.2 a; without the drift 0.11 sigma lower. Returns the simulation at its end."""
+    """side^2 spheres apart above a floor, in a trap of 25 kT/a^2 at 1.9 a and with a weight of 0.5 kT/a, stand as
+    Boltzmann says: mean height 1.88 a, sigma 0.2 a; without the drift 0.11 sigma lower. Returns the simulation at its
+    end."""
     count, K = side**2, 25 * KT / A**2
     k = np.arange(count)
     x = np.column_stack([25.0 * A * (k % side), 25.0 * A * (k // side), 0 * k + 1.88 * A])
-    sim = simulation(Spheres(x, A), f"cut_off_distance inf visc {ETA} {model} wall zlo 0", fix=False, dt=0.12 * UNIT / K,
-                     box=[(-40.0, 170.0), (-40.0, 170.0), (-1.0, 60.0)])
+    sim = simulation(Spheres(x, A), f"cut_off_distance inf visc {ETA} {model} wall zlo 0", fix=False,
+                     dt=0.12 * UNIT / K, box=[(-40.0, 170.0), (-40.0, 170.0), (-1.0, 60.0)])
     sim.commands(f"variable fz atom {K!r}*({1.9 * A!r}-z)-{0.5 * KT / A!r}\nfix trap all addforce 0 0 v_fz")
     noise(sim, options).run(60)
     z = []

@@ -1,7 +1,7 @@
 """Fixtures of the LAMMPS tests. They need the environment of build/env.sh: unittest/run.sh sets it.
 
-With --table only the hard cases are run (tests with the mark hard_case), and a table of them is printed: what the runs themselves
-reported, nothing else."""
+With --table only the hard cases are run (tests with the mark hard_case), and a table of them is printed: what the runs
+themselves reported, nothing else."""
 import os
 import re
 import sys
@@ -15,7 +15,8 @@ sys.path[:0] = [HERE] + [os.path.join(HERE, room) for room in ("common", "stokes
 try:
     import lammps  # noqa: F401
 except ImportError:
-    raise pytest.UsageError("the python module of LAMMPS is not there: source build/env.sh first, or run unittest/run.sh")
+    raise pytest.UsageError("the python module of LAMMPS is not there: source build/env.sh first, "
+                            "or run unittest/run.sh")
 
 import host  # noqa: E402
 import system  # noqa: E402
@@ -39,7 +40,7 @@ def simulation(tmp_path):
         made.pop().close()
 
 
-# --- several ranks, and what some LAMMPS has nothing of ---------------------------------------------------------------------
+# --- several ranks, and what some LAMMPS has nothing of ---------------------------------------------------------------
 
 def names(code):
     """All names that a function and the functions within it use, those of arguments that it gives included"""
@@ -53,12 +54,13 @@ def names(code):
 
 
 def ranks_of(item):
-    """How many ranks a test needs: what its mark or its parameter `ranks` says, 2 where its code has any name with "ranks" in it. A test
-    that uses several and says so nowhere fails (host.mpirun)."""
+    """How many ranks a test needs: what its mark or its parameter `ranks` says, 2 where its code has any name with
+    "ranks" in it. A test that uses several and says so nowhere fails (host.mpirun)."""
     mark, parameters = item.get_closest_marker("ranks"), item.callspec.params if hasattr(item, "callspec") else {}
     if mark:
         return mark.args[0]
-    return parameters["ranks"] if "ranks" in parameters else 2 if any("ranks" in name for name in names(item.function.__code__)) else 1
+    return (parameters["ranks"] if "ranks" in parameters else 2
+            if any("ranks" in name for name in names(item.function.__code__)) else 1)
 
 
 def left_out(item):
@@ -68,7 +70,8 @@ def left_out(item):
         if condition:
             return reason
     most = host.most()
-    return None if ranks_of(item) <= most else f"more ranks than this LAMMPS may have here ({host.family() or 'no MPI'}: {most})"
+    return (None if ranks_of(item) <= most
+            else f"more ranks than this LAMMPS may have here ({host.family() or 'no MPI'}: {most})")
 
 
 LEFT_OUT = {}      # reason: tests
@@ -100,7 +103,7 @@ def pytest_runtest_setup(item):
     host.undeclared = not item.get_closest_marker("ranks")
 
 
-# --- the table of hard cases ---------------------------------------------------------------------------------------------
+# --- the table of hard cases ------------------------------------------------------------------------------------------
 
 def pytest_addoption(parser):
     parser.addoption("--table", action="store_true", help="run the hard cases only and print a table of them")
@@ -108,10 +111,12 @@ def pytest_addoption(parser):
 
 def pytest_configure(config):
     for line in ("hard_case(name): a case of the table that --table prints; several tests may share one",
-                 "ranks(n): needs n ranks; set for all whose code names them (ranks_of)", "loader: of stokesdynplugin.so itself",
+                 "ranks(n): needs n ranks; set for all whose code names them (ranks_of)",
+                 "loader: of stokesdynplugin.so itself",
                  "nothing_to_test_if(condition, reason): is left out, and the reason told, where the condition holds"):
         config.addinivalue_line("markers", line)
-    config.option.loadscopereorder = False      # newer pytest-xdist would begin with the files of most tests, which are not those of LONG
+    # newer pytest-xdist would begin with the files of most tests, which are not those of LONG
+    config.option.loadscopereorder = False
 
 
 # Files that take long and come late in the alphabet: they begin first, so that no core waits for them in the end.
@@ -142,7 +147,8 @@ def pytest_runtest_makereport(item, call):
 def in_short(message):
     """A message of the pair style without what is the same in all of them."""
     message = re.sub(r" \([^()]*\.cpp:[0-9]+\)", "", message).split(" Last command:")[0]
-    return re.sub(r"^(ERROR|WARNING)( on proc [0-9]+)?: (Pair style stokes_dynamics: )?(step [0-9]+(, |: ))?", "", message)
+    return re.sub(r"^(ERROR|WARNING)( on proc [0-9]+)?: (Pair style stokes_dynamics: )?(step [0-9]+(, |: ))?", "",
+                  message)
 
 
 def pytest_terminal_summary(terminalreporter, config):

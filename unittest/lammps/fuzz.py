@@ -3,17 +3,18 @@
 
     . build/env.sh; unittest/lammps/fuzz.py [--cases N] [--seed S] [--ranks 1] [--timeout 20] [--show 3] [--one CASE]
 
-A case is drawn from (seed, number) alone. Its command is written from the grammar of the style (valid values, values on the
-border), then perhaps damaged: words dropped, doubled, swapped, misspelt, replaced by nonsense. A judge written from the pages in
-PKG-STOKESDYN/doc reads the words that came out and says what must happen:
+A case is drawn from (seed, number) alone. Its command is written from the grammar of the style (valid values, values on
+the border), then perhaps damaged: words dropped, doubled, swapped, misspelt, replaced by nonsense. A judge written from
+the pages in PKG-STOKESDYN/doc reads the words that came out and says what must happen:
 
     good    accepted, forces finite; or an error of physics in the run (diverged, not rigid, ...)
     odd     either: the pages do not say
     loud    refused, or accepted with a warning
     bad     refused by an error that names the style and a keyword at fault
 
-Each case has a LAMMPS of its own, in a worker that is started again when it dies or hangs. Prints a table, and of each kind of
-defect the first few cases as scripts; exits with 1 if there was a defect. --one prints a case and what came of it."""
+Each case has a LAMMPS of its own, in a worker that is started again when it dies or hangs. Prints a table, and of each
+kind of defect the first few cases as scripts; exits with 1 if there was a defect. --one prints a case and what came of
+it."""
 import argparse
 import collections
 import ctypes
@@ -31,7 +32,7 @@ from fuzz_styles import draw
 from fuzz_vans import files
 from host import environment, mpirun
 
-# --- running ------------------------------------------------------------------------------------------------------------
+# --- running ----------------------------------------------------------------------------------------------------------
 
 def work(seed, begin, end, folder):
     """A worker: cases begin to end - 1, a line of JSON for each; every rank of several makes the same ones."""
@@ -66,8 +67,8 @@ def work(seed, begin, end, folder):
 
 
 class Worker:
-    """The results of cases begin to end - 1, one by one; a worker that dies or hangs is followed by a new one. program: a script
-    that does as --work of this one; variables: of its environment."""
+    """The results of cases begin to end - 1, one by one; a worker that dies or hangs is followed by a new one. program:
+    a script that does as --work of this one; variables: of its environment."""
 
     def __init__(self, seed, end, ranks, timeout, folder, program=None, variables=()):
         self.seed, self.end, self.ranks, self.timeout, self.folder = seed, end, ranks, timeout, folder
@@ -75,10 +76,10 @@ class Worker:
 
     def results(self, begin):
         while begin < self.end:
-            command = mpirun(self.ranks) + [sys.executable, os.path.abspath(self.program or __file__), "--work", str(self.seed),
-                                            str(begin), str(self.end), self.folder]
-            process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True,
-                                       env=dict(environment(), **self.variables))
+            command = mpirun(self.ranks) + [sys.executable, os.path.abspath(self.program or __file__), "--work",
+                                            str(self.seed), str(begin), str(self.end), self.folder]
+            process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                                       start_new_session=True, env=dict(environment(), **self.variables))
             end, pending, aborted = "crash", b"", False
             while begin < self.end:
                 # The first case of a worker bears its start.
@@ -107,16 +108,17 @@ class Worker:
                 begin += 1
 
 
-# --- what came of it ----------------------------------------------------------------------------------------------------
+# --- what came of it --------------------------------------------------------------------------------------------------
 
 OURS = re.compile("stokes_dynamics|hydro/vans|/sph|sph/|property/global|fix_modify")
-PHYSICS = re.compile("diverge|definite|not rigid|singular|comm_modify|behind|on the wall|drives|phi =|memory|GB|density|"
-                     "moved more|one place|time step|not finite|pressure|no mean|volume fraction")
-LAMMPS = re.compile("fix group ID|Illegal|Incorrect args|Numeric index|All pair coeffs|Expected|Variable|Unrecognized|Unknown|"
-                    "Lost atoms|Non-numeric|neighbor bins|Region|[Gg]roup|[Oo]ut of range|mass|Invalid|Unbalanced|too large|"
-                    "Input line")
-DEFECTS = ["crash", "hang", "accepted, though the pages call it wrong", "accepted without the warning", "refused, though valid",
-           "error does not name the command", "error does not name the keyword", "forces not finite"]
+PHYSICS = re.compile("diverge|definite|not rigid|singular|comm_modify|behind|on the wall|drives|phi =|"
+                     "memory|GB|density|moved more|one place|time step|not finite|pressure|no mean|volume fraction")
+LAMMPS = re.compile("fix group ID|Illegal|Incorrect args|Numeric index|All pair coeffs|Expected|Variable|"
+                    "Unrecognized|Unknown|Lost atoms|Non-numeric|neighbor bins|Region|[Gg]roup|[Oo]ut of range|mass|"
+                    "Invalid|Unbalanced|too large|Input line")
+DEFECTS = ["crash", "hang", "accepted, though the pages call it wrong", "accepted without the warning",
+           "refused, though valid", "error does not name the command", "error does not name the keyword",
+           "forces not finite"]
 
 
 def outcome(case, result):
@@ -130,7 +132,8 @@ def outcome(case, result):
             return "accepted, though the pages call it wrong"
         if level == LOUD:
             names = [name for name in case.faults if name]
-            return "accepted with a warning" if any(n in result["warnings"] for n in names) else "accepted without the warning"
+            return "accepted with a warning" if any(n in result["warnings"]
+                                                    for n in names) else "accepted without the warning"
         return "accepted, forces finite"
     text = error.split(" Last command:")[0].split("(src/")[0]
     if not OURS.search(re.sub(r"\([^()]*\.(cpp|h):\d+\)", "", text)):
@@ -170,7 +173,8 @@ class Found:
         lines = []
         for what in DEFECTS:
             for number, case, result in self.cases[what][:show]:
-                lines += [f"\n{what}: case {number}, {case.level}, at fault: {' '.join(dict.fromkeys(case.faults)) or '-'}"]
+                lines += [f"\n{what}: case {number}, {case.level}, at fault: "
+                          f"{' '.join(dict.fromkeys(case.faults)) or '-'}"]
                 lines += ["    " + line for line in case.lines[case.tried:]] + ["    " + (result.get("error") or "")]
         return "\n".join(lines)
 
@@ -183,7 +187,8 @@ def run(cases, seed, ranks=1, timeout=20, first=0, tell=False):
             found.add(draw(seed, result["number"]), result)
             done = sum(found.count.values())
             if tell and done % 1000 == 0:
-                print(f"{done} cases in {time.time() - began:.0f} s, {found.defects} defects", file=sys.stderr, flush=True)
+                print(f"{done} cases in {time.time() - began:.0f} s, {found.defects} defects", file=sys.stderr,
+                      flush=True)
     return found
 
 
@@ -206,7 +211,8 @@ def main():
         print(f"# {case.level}, at fault: {case.faults}; {dict(found.count)}\n{found.examples(1)}")
     else:
         found = run(given.cases, given.seed, given.ranks, given.timeout, tell=True)
-        print(f"seed {given.seed}, {given.cases} cases, {given.ranks} rank(s)\n\n{found.table()}\n{found.examples(given.show)}")
+        print(f"seed {given.seed}, {given.cases} cases, {given.ranks} rank(s)\n\n{found.table()}\n"
+              f"{found.examples(given.show)}")
     return 1 if found.defects else 0
 
 

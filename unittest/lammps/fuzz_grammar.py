@@ -1,7 +1,8 @@
 """What the words of a command may be, how they are written, damaged and read again (for fuzz.py).
 
-A kind of word (Number, Choice, ...) has good values, values on the border, and judges any word. A grammar gives each keyword the
-kinds of its values. A Case is one command in a scene: drawn, damaged, then read as the pages say it must be."""
+A kind of word (Number, Choice, ...) has good values, values on the border, and judges any word. A grammar gives each
+keyword the kinds of its values. A Case is one command in a scene: drawn, damaged, then read as the pages say it must
+be."""
 import math
 import random
 import re
@@ -9,11 +10,11 @@ import re
 GOOD, ODD, LOUD, BAD = "good", "odd", "loud", "bad"
 LATE = "bad, but perhaps seen only when all words are read, so that other faults may come first"
 
-# --- words: what may stand for a value, and what the pages say of it ---------------------------------------------------
+# --- words: what may stand for a value, and what the pages say of it --------------------------------------------------
 
-NONSENSE = """nan inf -inf INF 1e400 -1e400 1e-400 0x10 0x1p3 abc "" NULL yes no 1.5.2 1,5 1d3 --1 + - 5x 1e v_ v_missing v_text
-v_nan v_index -1 0 -0.0 1e3 3.7 007 +2 .5 5. 2147483647 2147483648 -2147483648 4294967297 9223372036854775808 * all 1e300 1e-300
-c_1 f_2[3]""".split() + ["9" * 25, "x" * 300]
+NONSENSE = """nan inf -inf INF 1e400 -1e400 1e-400 0x10 0x1p3 abc "" NULL yes no 1.5.2 1,5 1d3 --1 + - 5x 1e v_
+v_missing v_text v_nan v_index -1 0 -0.0 1e3 3.7 007 +2 .5 5. 2147483647 2147483648 -2147483648 4294967297
+9223372036854775808 * all 1e300 1e-300 c_1 f_2[3]""".split() + ["9" * 25, "x" * 300]
 DECIMAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$")
 EXTREME = 1e10
 
@@ -210,7 +211,7 @@ def read(kind, case):
     return [word]
 
 
-# --- a case -------------------------------------------------------------------------------------------------------------
+# --- a case -----------------------------------------------------------------------------------------------------------
 
 class Case:
     """One command in a scene. lines: the script, of which line number `tried` is the command; the others are right."""
@@ -248,7 +249,8 @@ class Case:
             elif how == 4 and len(words[k]) > 1:
                 j = draw.randrange(len(words[k]) - 1)
                 w = words[k]
-                words[k] = draw.choice([w[:j] + w[j + 1:], w[:j] + w[j + 1] + w[j] + w[j + 2:], w.upper(), w[:j] + "_" + w[j:]])
+                words[k] = draw.choice([w[:j] + w[j + 1:], w[:j] + w[j + 1] + w[j] + w[j + 2:], w.upper(),
+                                        w[:j] + "_" + w[j:]])
             elif how == 5 and len(words) > 2:       # a stretch of words once more, at the end
                 words += words[k:k + 2]
             else:

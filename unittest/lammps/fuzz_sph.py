@@ -1,6 +1,7 @@
-"""Scenes, grammar and rules of pair_style sph/artVisc/tensCorr and its fixes, written from their pages (for fuzz.py)."""
-from fuzz_grammar import (ANY, BAD, COUNT, NOT_NEGATIVE, ODD, POSITIVE, VARIABLES, YES_NO, Choice, Field, Integer, Maybe, Name, Number,
-                          NumberOr, Or, decimal, positive, read, write)
+"""Scenes, grammar and rules of pair_style sph/artVisc/tensCorr and its fixes, written from their pages (for
+fuzz.py)."""
+from fuzz_grammar import (ANY, BAD, COUNT, NOT_NEGATIVE, ODD, POSITIVE, VARIABLES, YES_NO, Choice, Field, Integer,
+                          Maybe, Name, Number, NumberOr, Or, decimal, positive, read, write)
 
 WATER = """units si
 atom_style sph
@@ -29,26 +30,29 @@ neigh_modify delay 0 every 1
 timestep 1e-6
 thermo 100000"""
 # no free surface, as correction needs it
-BULK = WATER.replace("boundary f f f", "boundary p p p").replace("block -0.05 0.08 -0.05 0.08 -0.05 0.08", "block 0 0.04 0 0.04 0 0.04")
+BULK = WATER.replace("boundary f f f", "boundary p p p").replace("block -0.05 0.08 -0.05 0.08 -0.05 0.08",
+                                                                 "block 0 0.04 0 0.04 0 0.04")
 LENGTH = positive("0.013", "0.012", border=["0", "-1", "1e-12", "0.05"])
 ARTVISC = [Number(lambda v: v >= 0, ["0.1", "0"], ["-1"])] * 2 + [Number(lambda v: v >= 0, ["1.7e-6", "0"], ["-1"])]
 SPACING = positive("0.01", border=["0", "-1", "0.03"])
 SOUND = positive("20", "25")
-SPH_PAIR = {"artVisc": ARTVISC, "tensCorr": [NOT_NEGATIVE, SPACING], "viscosity": [positive("1e-3", odd=lambda v: v == 0), Maybe("central", "laplacian")],
+SPH_PAIR = {"artVisc": ARTVISC, "tensCorr": [NOT_NEGATIVE, SPACING],
+            "viscosity": [positive("1e-3", odd=lambda v: v == 0), Maybe("central", "laplacian")],
             "shift": [Choice("yes", "yes", "no", "pliant")], "correction": [YES_NO]}
 SPH_DENSITY = {"delta": [Number(lambda v: v >= 0, ["0", "0.1", "0.1", "0.2"], ["-1", "1e300"])], "volume": [YES_NO]}
 SPH_COEFF = {"h": [LENGTH], "c": [SOUND], "alpha": [NOT_NEGATIVE], "beta": [NOT_NEGATIVE], "deltap": [SPACING]}
 KERNELS = ["cubicspline", "wendland", "cubicspline2d", "wendland2d"]
 B, RHO = positive("57142.9", "300"), positive("1000")
-PRESSURES = [("absolut", [positive("20", "7")]), ("relativ", [B, RHO]), ("relativ", [B, RHO, ANY]), ("Tait", [B, RHO, POSITIVE]),
-             ("Tait", [B, RHO, POSITIVE, ANY])]
+PRESSURES = [("absolut", [positive("20", "7")]), ("relativ", [B, RHO]), ("relativ", [B, RHO, ANY]),
+             ("Tait", [B, RHO, POSITIVE]), ("Tait", [B, RHO, POSITIVE, ANY])]
 PLANE = Number(lambda v: True, ["-0.01", "-0.02"], ["0.06", "0.01"])
 FAR = Number(lambda v: True, ["0.06", "0.04"], ["-0.01", "0.01"])
 
 
 def water(case, scene=WATER, **instead):
     """The scene, with some of its lines replaced. The tried line is the one that is replaced first."""
-    lines = {"pair": "pair_style sph/artVisc/tensCorr wendland 0.013 artVisc 0.1 0 1.7e-6 tensCorr 0.2 0.01 viscosity 1e-3",
+    lines = {"pair": "pair_style sph/artVisc/tensCorr wendland 0.013 artVisc 0.1 0 1.7e-6 tensCorr 0.2 0.01 "
+                     "viscosity 1e-3",
              "coeff": "pair_coeff * * c 20", "eos": "fix eos all sph/pressure Tait 57142.9 1000 7",
              "density": "fix density all sph/density/continuity", "move": "fix move all nve/sph"}
     tried = next(iter(instead.values()))
@@ -81,12 +85,14 @@ def make_sph_pair(case):
 
 
 def make_sph_order(case):
-    """Shift, correction, central viscosity, two fluids and delta: what goes with what. The pair style or the density is damaged."""
+    """Shift, correction, central viscosity, two fluids and delta: what goes with what. The pair style or the density is
+    damaged."""
     draw = case.draw
     case.style = "sph/artVisc/tensCorr"
     bulk, walled, mover = draw.random() < 0.6, draw.random() < 0.1, draw.choice(["nve/sph"] * 9 + ["sph"])
     kernel, h = draw.choice(["wendland"] * 5 + ["cubicspline", "wendland2d"]), draw.choice(["0.013", "0.012", "0.015"])
-    terms = [name for name, chance in (("artVisc", 0.3), ("tensCorr", 0.15), ("viscosity", 0.5), ("shift", 0.5), ("correction", 0.5))
+    terms = [name for name, chance in (("artVisc", 0.3), ("tensCorr", 0.15), ("viscosity", 0.5), ("shift", 0.5),
+                                       ("correction", 0.5))
              if draw.random() < chance]
     words = [w for name in terms for w in [name] + [w for kind in SPH_PAIR[name] for w in write(kind, draw)]]
     density = [w for name in SPH_DENSITY if draw.random() < (0.85 if name == "delta" else 0.25)
@@ -129,7 +135,8 @@ def make_sph_global(case):
     water(case, wide="fix wide all property/global " + " ".join(words), coeff="pair_coeff * *" + " c 20" * c)
     case.extreme |= violent(words)
     kind = kinds.get(words[0] if words else "", SOUND)
-    if not case.judge(words, {}, [("property", Choice(*kinds)), ("kind", Choice("peratomtype")), (name, kind), (name, kind)]):
+    if not case.judge(words, {}, [("property", Choice(*kinds)), ("kind", Choice("peratomtype")), (name, kind),
+                                  (name, kind)]):
         case.faults += words[:1]
         return
     lengths = words[0] == "sl"
@@ -169,7 +176,8 @@ def make_sph_pressure(case):
     numbers = words[:words.index("tension")] if "tension" in words else words
     kinds = max((k for k in ways if len(k) < len(numbers)), key=len, default=ways[0])
     first = words[0] if words else ""
-    case.judge(words, {"tension": [YES_NO]}, [("equation of state", Choice("absolut", "relativ", "Tait"))] + [(first, k) for k in kinds])
+    case.judge(words, {"tension": [YES_NO]}, [("equation of state", Choice("absolut", "relativ", "Tait"))] +
+               [(first, k) for k in kinds])
     case.refuse_if(first == "absolut" and case.value("tension", "yes") == "no", "tension")
     if case.level == BAD:
         case.faults += words[:1] + ["equation of state"]
@@ -197,7 +205,8 @@ def make_sph_move(case):
     draw = case.draw
     case.style = draw.choice(["nve/sph", "nve/sph/stationary"])
     words = case.damaged([]) if draw.random() < 0.5 else []
-    water(case, move=f"fix move {draw.choice(['all', 'fluid', 'wall', 'nobody', 'missing'])} {case.style} " + " ".join(words))
+    water(case, move=f"fix move {draw.choice(['all', 'fluid', 'wall', 'nobody', 'missing'])} {case.style} " +
+          " ".join(words))
     if "missing" in case.lines[case.tried].split()[2]:
         case.says(BAD, "group")
     case.refuse_if(bool(words), *words[:1])
@@ -212,7 +221,8 @@ def make_sph_wall(case):
     elif kind == "cylinder":
         case.style, begin = "wall/sph", [("wall", Choice("zcylinder")), ("zcylinder", positive("0.2"))] + rest
     else:
-        planes = [("wall", Choice("xplane", "yplane", "zplane")), ("plane", NumberOr("NULL", PLANE)), ("plane", NumberOr("NULL", FAR))]
+        planes = [("wall", Choice("xplane", "yplane", "zplane")), ("plane", NumberOr("NULL", PLANE)),
+                  ("plane", NumberOr("NULL", FAR))]
         case.style, begin = "wall/sph", planes + rest
     words = case.damaged([w for _, k in begin for w in write(k, draw)])
     water(case, wall=f"fix wall all {case.style} " + " ".join(words))
@@ -242,7 +252,8 @@ def make_sph_adami(case):
 
 # Particles stand at 0 to 0.03, the box ends at -0.05 and 0.08.
 FACES = ["xlo", "xhi", "ylo", "yhi", "zlo", "zhi"]
-OPENING = [("FACE", Choice(*FACES)), ("POSITION", Number(lambda v: True, ["0.005", "0.025", "0.015"], ["0.06", "-0.03", "-2"])),
+OPENING = [("FACE", Choice(*FACES)),
+           ("POSITION", Number(lambda v: True, ["0.005", "0.025", "0.015"], ["0.06", "-0.03", "-2"])),
            ("WIDTH", positive("0.04", "0.041", border=["0", "-1", "0.03", "0.07"]))]
 SPEED = Field(lambda v: True, ["1", "0", "0.3"])
 ENDS = {"inlet": {"velocity": [SPEED], "gravity": [Field(lambda v: True, ["0", "-9.81"], atom=False)] * 3},
@@ -255,9 +266,11 @@ def make_sph_opening(case):
     face = draw.choice(FACES)
     place = draw.choice(["0.005", "0.015"] if face.endswith("lo") else ["0.025", "0.015"])
     words = [face, place] if draw.random() < 0.8 else [w for _, kind in OPENING[:2] for w in write(kind, draw)]
-    words = case.damaged(words + write(OPENING[2][1], draw) + case.words_of(grammar, ["velocity"] if end == "inlet" else [], few=1))
+    words = case.damaged(words + write(OPENING[2][1],
+                                       draw) + case.words_of(grammar, ["velocity"] if end == "inlet" else [], few=1))
     group = draw.choice(["all"] * 6 + ["fluid", "nobody"])
-    water(case, WATER.replace("variable eta equal 1.5", VARIABLES), opening=f"fix end {group} sph/{end} " + " ".join(words))
+    water(case, WATER.replace("variable eta equal 1.5", VARIABLES),
+          opening=f"fix end {group} sph/{end} " + " ".join(words))
     case.extreme |= violent(words)
     if not case.judge(words, grammar, OPENING):
         case.faults += ["FACE", "POSITION", "WIDTH"]
@@ -274,8 +287,10 @@ def make_sph_opening(case):
 
 def make_sph_check(case):
     case.style = "check/timestep/sph"
-    begin = [("N", COUNT), ("fraction", Number(lambda v: v > 0, ["0.3", "0.25"], ["0", "-1", "1.5"], odd=lambda v: v > 1))]
-    words = case.damaged([w for _, k in begin for w in write(k, case.draw)] + case.draw.choice([[], ["warn"], ["stop"]]))
+    begin = [("N", COUNT), ("fraction", Number(lambda v: v > 0, ["0.3", "0.25"], ["0", "-1", "1.5"],
+                                               odd=lambda v: v > 1))]
+    words = case.damaged([w for _, k in begin for w in write(k, case.draw)] +
+                         case.draw.choice([[], ["warn"], ["stop"]]))
     water(case, check="fix limit all check/timestep/sph " + " ".join(words))
     if not case.judge(words, {"warn": [], "stop": []}, begin):
         case.faults += ["form", "N", "fraction"]
@@ -287,7 +302,8 @@ class Angles:
     ANGLE = Number(lambda v: 0 < v < 180, ["60", "90", "120.5"], ["0", "180", "-1", "1e-3"])
 
     def write(self, draw):
-        return [w for _ in range(draw.choice([1, 1, 1, 2])) for kind in (self.TYPE, self.ANGLE) for w in write(kind, draw)]
+        return [w for _ in range(draw.choice([1, 1, 1, 2])) for kind in (self.TYPE, self.ANGLE)
+                for w in write(kind, draw)]
 
     def read(self, case):
         words = read(self.TYPE, case) + read(self.ANGLE, case)
@@ -304,7 +320,8 @@ def make_sph_tension(case):
     case.style, draw = "sph/tension", case.draw
     walled, shift = draw.random() < 0.6, draw.choice(["yes"] * 8 + ["pliant", "no"])
     volume, group = draw.choice(["no"] * 9 + ["yes"]), draw.choice(["all"] * 6 + ["fluid", "nobody", "wall"])
-    words = case.damaged(write(positive("0.072", "0.5", border=["0", "-1", "99", "101"]), draw) + case.words_of(TENSION, few=2))
+    words = case.damaged(write(positive("0.072", "0.5", border=["0", "-1", "99", "101"]),
+                               draw) + case.words_of(TENSION, few=2))
     water(case, tension=f"fix pull {group} sph/tension " + " ".join(words),
           pair=f"pair_style sph/artVisc/tensCorr wendland 0.013 viscosity 1 central shift {shift}",
           density=f"fix density all sph/density/continuity delta 0.1 volume {volume}",
@@ -325,13 +342,17 @@ def make_sph_tension(case):
 
 
 # 8 grains (type 3) in the water
-WET = BULK.replace("atom_style sph", "atom_style hybrid sph sphere").replace("create_box 2 box", "create_box 3 box").replace(
-    "mass * 0.001", "mass * 0.001\ncreate_atoms 3 random 8 4711 box\nset type 3 diameter {diameter} density 2650\nset type 1*2 mass 0.001\n"
-    "group grains type 3\ngroup sph type 1 2").replace("set group all sph/rho 1001", "set group sph sph/rho 1001\ncomm_modify vel yes")
+WET = BULK.replace("atom_style sph", "atom_style hybrid sph sphere").replace("create_box 2 box",
+                                                                             "create_box 3 box").replace(
+    "mass * 0.001", "mass * 0.001\ncreate_atoms 3 random 8 4711 box\nset type 3 diameter {diameter} density 2650\n"
+    "set type 1*2 mass 0.001\n"
+    "group grains type 3\ngroup sph type 1 2").replace("set group all sph/rho 1001",
+                                                       "set group sph sph/rho 1001\ncomm_modify vel yes")
 OF_BED = ["ergun", "gidaspow", "beetstra", "koch_hill"]
-GRAINS = {"viscosity": [positive("1e-3")], "drag": [Choice("yade", "schiller_naumann", "brown_lawler", "ferguson_church", *OF_BED)],
-          "hindrance": [Or(richardson_zaki=[], di_felice=[], otherwise=[NOT_NEGATIVE])], "fall_diameter": [positive("0.7", "1", "1.3")],
-          "displace": [YES_NO], "own_flow": [YES_NO]}
+GRAINS = {"viscosity": [positive("1e-3")],
+          "drag": [Choice("yade", "schiller_naumann", "brown_lawler", "ferguson_church", *OF_BED)],
+          "hindrance": [Or(richardson_zaki=[], di_felice=[], otherwise=[NOT_NEGATIVE])],
+          "fall_diameter": [positive("0.7", "1", "1.3")], "displace": [YES_NO], "own_flow": [YES_NO]}
 
 
 def make_sph_grains(case):
@@ -340,9 +361,11 @@ def make_sph_grains(case):
     group, volume = draw.choice(["grains"] * 8 + ["nobody", "all", "sph"]), draw.choice(["yes"] * 9 + ["no"])
     words = case.damaged(case.words_of(GRAINS, few=3))
     water(case, WET.format(diameter=diameter), grains=f"fix drag {group} sph/grains " + " ".join(words),
-          pair="pair_style hybrid/overlay sph/artVisc/tensCorr wendland 0.013 " + ("viscosity 1e-3" if wet else "artVisc 0.1 0 1.7e-6") + " zero 0.01",
+          pair="pair_style hybrid/overlay sph/artVisc/tensCorr wendland 0.013 " +
+          ("viscosity 1e-3" if wet else "artVisc 0.1 0 1.7e-6") + " zero 0.01",
           coeff="pair_coeff * * zero", more="pair_coeff 1*2 1*2 sph/artVisc/tensCorr c 20",
-          eos="fix eos sph sph/pressure Tait 57142.9 1000 7", density=f"fix density sph sph/density/continuity delta 0.1 volume {volume}",
+          eos="fix eos sph sph/pressure Tait 57142.9 1000 7",
+          density=f"fix density sph sph/density/continuity delta 0.1 volume {volume}",
           move="fix move sph nve/sph", roll="fix roll grains nve/sphere")
     case.lines.append(case.lines.pop(case.tried))       # the pair style first
     case.tried = len(case.lines) - 1

@@ -1,6 +1,6 @@
 """Scenes, grammar and rules of pair_style and fix stokes_dynamics, written from their pages (for fuzz.py)."""
-from fuzz_grammar import (BAD, COUNT, GOOD, ODD, U, VARIABLES, YES_NO, Choice, Field, Integer, MaybeNumber, Name, Number, NumberOr,
-                          Or, delete_something, positive)
+from fuzz_grammar import (BAD, COUNT, GOOD, ODD, U, VARIABLES, YES_NO, Choice, Field, Integer, MaybeNumber, Name,
+                          Number, NumberOr, Or, delete_something, positive)
 
 BOX = 18.0
 SPHERES = """units lj
@@ -33,20 +33,25 @@ thermo 100000"""
 WALL = NumberOr("EDGE", Number(lambda v: True, ["-8.5", "-20"], ["0", "8", "nan"], odd=lambda v: v > -8))
 
 STOKES = {
-    "cut_off_distance": [Number(lambda v: v > 0, ["inf", "inf", "inf", "12", "4.5", "1e-6"], ["200", "0", "-1", "1e300", "INF"])],
+    "cut_off_distance": [Number(lambda v: v > 0, ["inf", "inf", "inf", "12", "4.5", "1e-6"],
+                                ["200", "0", "-1", "1e300", "INF"])],
     "visc": [Field(lambda v: v > 0, ["1", "0.625", "1e-3"], ["0", "-1", "1e-300", "1e300"])],
     "update_every": [COUNT], "clumps_only": [YES_NO], "region": [Name("zone", "part", "nowhere")],
     "group": [Name("all", "g", "half", "nobody")], "add_force": [YES_NO],
-    "relative_tolerance": [Number(lambda v: 0 < v < 1, ["1e-3", "1e-8", "1e-2"], ["0", "-1", "1", "2", "0.5", "1e-300", "0.1"],
+    "relative_tolerance": [Number(lambda v: 0 < v < 1, ["1e-3", "1e-8", "1e-2"],
+                                  ["0", "-1", "1", "2", "0.5", "1e-300", "0.1"],
                                   odd=lambda v: v == 0.1, loud=lambda v: v > 0.1)],
     "max_iter": [Integer(lambda v: v >= 1, ["100", "1", "1000"], ["0", "-5", "2147483647"], odd=lambda v: v == 0)],
-    "algorithm": [Choice("1", "2", "2", "2")], "fluid_velocity": [Or([U, U, U], box=[])], "tensor": [Choice("rpy", "rpy", "rpy", "oseen")],
-    "taper": [Choice("none", "wendland", "spherical")], "lubrication": [YES_NO],
-    "lubrication_gap": [Number(lambda v: v >= 1e-6, ["1e-3", "0.01"], ["0", "-1", "1e-7"])],
-    "lubrication_range": [Number(lambda v: 0 < v <= 8, ["2", "1", "8"], ["0", "-1", "9", "1e-3"], odd=lambda v: v == 1e-3)],
-    "precondition": [Choice("auto", "none", "clump", "sparse", "waves")], "far_field": [Choice("auto", "direct", "ewald")],
+    "algorithm": [Choice("1", "2", "2", "2")], "fluid_velocity": [Or([U, U, U], box=[])],
+    "tensor": [Choice("rpy", "rpy", "rpy", "oseen")], "taper": [Choice("none", "wendland", "spherical")],
+    "lubrication": [YES_NO], "lubrication_gap": [Number(lambda v: v >= 1e-6, ["1e-3", "0.01"], ["0", "-1", "1e-7"])],
+    "lubrication_range": [Number(lambda v: 0 < v <= 8, ["2", "1", "8"], ["0", "-1", "9", "1e-3"],
+                                 odd=lambda v: v == 1e-3)],
+    "precondition": [Choice("auto", "none", "clump", "sparse", "waves")],
+    "far_field": [Choice("auto", "direct", "ewald")],
     "far_field_tolerance": [Number(lambda v: 1e-13 <= v <= 0.1, ["1e-3", "1e-6"], ["0", "-1", "1", "1e-14", "0.11"])],
-    "warm_start": [YES_NO], "rotation": [YES_NO], "fluid_vorticity": [U, U, U], "rigid_clumps": [Choice("yes", "no", "auto")],
+    "warm_start": [YES_NO], "rotation": [YES_NO], "fluid_vorticity": [U, U, U],
+    "rigid_clumps": [Choice("yes", "no", "auto")],
     "multiblob": [Integer(lambda v: v in (1, 12, 42), ["1", "12", "42"], ["0", "2", "-1", "13", "2147483648"])],
     "one_body": [YES_NO], "wall": [Choice("zlo", "zlo", "xlo", "ylo"), WALL], "flow": [Choice("pressure", "flux")],
     "shell": [Integer(lambda v: v == 1 or v >= 12, ["1", "12", "13", "42"],
@@ -86,8 +91,8 @@ def judge_stokes(case, words, how):
     case.refuse_if("far_field_tolerance" in case.settings and (not everybody or far == "direct"), "far_field_tolerance")
     case.refuse_if(far == "ewald" and s("tensor") == "oseen", "far_field", "tensor")
     case.refuse_if(far == "ewald" and sparse, "precondition", "far_field")
-    case.refuse_if(everybody and how == "periodic" and (sparse or far == "direct" or s("tensor") == "oseen"), "far_field",
-                   "precondition", "tensor")
+    case.refuse_if(everybody and how == "periodic" and (sparse or far == "direct" or s("tensor") == "oseen"),
+                   "far_field", "precondition", "tensor")
     case.refuse_if(s("precondition") == "waves" and (not everybody or how != "periodic" or s("algorithm", "1") != "2"),
                    "precondition")
     lubricated, gap = s("lubrication") == "yes", s("lubrication_gap", "1e-3")
@@ -95,8 +100,9 @@ def judge_stokes(case, words, how):
     blobs = int(s("multiblob", "1"))
     turns = rotation or shell != 1 or blobs != 1
     case.refuse_if(lubricated and (not everybody or not turns), "lubrication")
-    case.refuse_if(blobs != 1 and (not everybody or s("tensor") == "oseen" or "shell" in case.settings or s("rotation") == "no"
-                                   or "precondition" in case.settings or case.level != BAD and lubricated and float(reach) > 2),
+    case.refuse_if(blobs != 1 and (not everybody or s("tensor") == "oseen" or "shell" in case.settings or
+                                   s("rotation") == "no" or "precondition" in case.settings or case.level != BAD and
+                                   lubricated and float(reach) > 2),
                    "multiblob", "lubrication_range")
     case.refuse_if(blobs == 1 and "one_body" in case.settings, "one_body")
     case.refuse_if("flow" in case.settings, "flow")      # there is one wall at most
@@ -111,7 +117,8 @@ def judge_stokes(case, words, how):
     case.refuse_if(clumps and how in ("no molecules", "no radius"), "clumps_only", "molecule", "radius")
     case.refuse_if(s("taper", "none") != "none" and cut in (None, "inf"), "taper")
     case.refuse_if(s("precondition") == "sparse" and cut != "inf", "precondition")
-    case.refuse_if(s("precondition") in ("clump", "sparse") and s("algorithm", "1") != "2" and rigid != "yes", "precondition")
+    case.refuse_if(s("precondition") in ("clump", "sparse") and s("algorithm", "1") != "2" and rigid != "yes",
+                   "precondition")
     case.refuse_if(s("precondition") == "clump" and how == "no molecules", "precondition")
     case.refuse_if(rotation and s("tensor") == "oseen", "rotation", "tensor")
     case.refuse_if(rigid != "no" and how in ("no molecules", "no radius"), "rigid_clumps", "molecule", "radius")
@@ -121,7 +128,8 @@ def judge_stokes(case, words, how):
         case.says(ODD, "rigid_clumps", "cut_off_distance")
     case.refuse_if(rigid != "no" and s("tensor") == "oseen", "rigid_clumps", "tensor")
     case.refuse_if(shell != 1 and rigid == "no", "shell")
-    case.refuse_if("fluid_vorticity" in case.settings and (not turns or s("fluid_velocity") == "box"), "fluid_vorticity")
+    case.refuse_if("fluid_vorticity" in case.settings and (not turns or s("fluid_velocity") == "box"),
+                   "fluid_vorticity")
     case.refuse_if(rigid == "yes" and (s("region") == "part" or s("group") == "half"), "region", "group")
     if cut not in (None, "inf") and float(cut) > 100 * BOX:
         case.says(ODD, "cut_off_distance")
@@ -133,7 +141,8 @@ def judge_stokes(case, words, how):
 
 
 # A periodic box that deforms
-DEFORMS = ["x erate 0.2", "z vel -0.3", "x final -8 9 z volume", "xy erate 0.5", "yz wiggle 0.3 1e-3", "y erate 0.1 xz erate -0.3"]
+DEFORMS = ["x erate 0.2", "z vel -0.3", "x final -8 9 z volume", "xy erate 0.5", "yz wiggle 0.3 1e-3",
+           "y erate 0.1 xz erate -0.3"]
 
 
 def deform(case):
@@ -154,7 +163,8 @@ def judge_deform(case, remap):
 def forgive_unselected(case):
     """Values that nobody asks for need not be right."""
     asked = {k for k, words in case.settings.items() if any(w.startswith("v_") for w in words)}
-    if (case.value("region") == "nowhere" or case.value("group") == "nobody") and case.level == BAD and set(case.faults) <= asked:
+    if (case.value("region") == "nowhere" or case.value("group") == "nobody") and case.level == BAD and set(
+        case.faults) <= asked:
         case.level = ODD
 
 
@@ -210,20 +220,24 @@ def make_stokes_fix(case):
 
 
 OVERDAMPED = {
-    "scheme": [Choice("ab2", "euler", "midpoint")], "held": [Name("g", "half", "nobody")], "pin": [Name("g", "half", "nobody")],
-    "torque": [Name("g", "half", "nobody")] + [Field(lambda v: True, ["0", "0.5", "-2"], ["1e3"])] * 3,
+    "scheme": [Choice("ab2", "euler", "midpoint")], "held": [Name("g", "half", "nobody")],
+    "pin": [Name("g", "half", "nobody")], "torque": [Name("g", "half", "nobody")] +
+    [Field(lambda v: True, ["0", "0.5", "-2"], ["1e3"])] * 3,
     "squirm": [Name("g", "half", "nobody")] + [Field(lambda v: True, ["0", "0.5", "-2"], ["1e3"])] * 2,
     "adapt": [COUNT, positive("1e-6", "1e-5"), positive("1e-5", "1e-4"), positive("0.01", "1")],
     "temperature": [Field(lambda v: v >= 0, ["1", "0.2", "0"], ["-1", "1e300"], atom=False),
                     Integer(lambda v: 0 < v < 2**31, ["1", "4711"], ["0", "-3", "2147483647", "2147483648"])],
-    "spin": [Name("g", "half", "nobody")] + [Number(lambda v: True, ["0", "0.5", "-2"], ["1e3"])] * 3 + [MaybeNumber(positive("0.1", "50"))],
-    "noise_tolerance": [Number(lambda v: 0 < v < 0.5, ["0.01", "0.1"], ["0", "0.5", "-1", "1e-300"], odd=lambda v: v < 1e-6)],
+    "spin": [Name("g", "half", "nobody")] + [Number(lambda v: True, ["0", "0.5", "-2"], ["1e3"])] * 3 +
+    [MaybeNumber(positive("0.1", "50"))],
+    "noise_tolerance": [Number(lambda v: 0 < v < 0.5, ["0.01", "0.1"], ["0", "0.5", "-1", "1e-300"],
+                               odd=lambda v: v < 1e-6)],
 }
-FLUIDS = ["", "rotation yes", "multiblob 12", "multiblob 12 lubrication yes", "rotation yes lubrication yes", "wall zlo -8.5",
-          "multiblob 12 wall zlo -8.5", "rigid_clumps yes rotation yes", "rigid_clumps yes shell 12",
+FLUIDS = ["", "rotation yes", "multiblob 12", "multiblob 12 lubrication yes", "rotation yes lubrication yes",
+          "wall zlo -8.5", "multiblob 12 wall zlo -8.5", "rigid_clumps yes rotation yes", "rigid_clumps yes shell 12",
           "wall zlo -8.5 far_field ewald", "multiblob 12 wall zlo -8.5 far_field ewald"]
 # in a periodic box that deforms
-CARRIED = ["fluid_velocity box" + more for more in ("", " rotation yes lubrication yes", " multiblob 12", " rigid_clumps yes rotation yes")]
+CARRIED = ["fluid_velocity box" + more for more in ("", " rotation yes lubrication yes", " multiblob 12",
+                                                    " rigid_clumps yes rotation yes")]
 
 
 def judge_overdamped(case, words, fluid):
@@ -239,21 +253,24 @@ def judge_overdamped(case, words, fluid):
     case.refuse_if(fluid.startswith("rigid") and case.value("pin") == "half", "pin")
     for one, other in (("held", "pin"), ("pin", "spin"), ("held", "torque")):
         case.refuse_if({case.value(one), case.value(other)} <= {"g", "half"}, one, other)
-    case.refuse_if("squirm" in given and ("multiblob" not in fluid or case.value("squirm") != "nobody"), "squirm")    # no dipoles
+    # no dipoles
+    case.refuse_if("squirm" in given and ("multiblob" not in fluid or case.value("squirm") != "nobody"), "squirm")
     if "torque" in given:
         turns = any(word in fluid for word in ("rotation", "multiblob", "shell"))
         case.refuse_if(not turns and case.value("torque") != "nobody", "torque")
         case.says(ODD)
     if "spin" in given:
         case.refuse_if(not any(word in fluid for word in ("rotation", "multiblob", "shell")), "spin", "rotation")
-        case.refuse_if(fluid.startswith("rigid") and case.value("spin") != "nobody", "spin")       # no free spheres there
+        # no free spheres there
+        case.refuse_if(fluid.startswith("rigid") and case.value("spin") != "nobody", "spin")
         case.refuse_if({case.value("held"), case.value("spin")} <= {"g", "half"}, "spin", "held")
         case.refuse_if(len(given["spin"]) == 5 and not any(float(w) for w in given["spin"][1:4]), "spin")
         case.says(ODD)
     if T in ("0", "v_zero"):
         case.says(ODD if "temperature" in given or scheme == "midpoint" else GOOD)
         return
-    drift = "held" in given or "pin" in given or "spin" in given or any(word in fluid for word in ("lubrication", "multiblob", "wall", "rigid"))
+    drift = ("held" in given or "pin" in given or "spin" in given or
+             any(word in fluid for word in ("lubrication", "multiblob", "wall", "rigid")))
     case.refuse_if("adapt" in given or drift and scheme in ("ab2", "euler"), "temperature", "scheme")
     case.says(ODD)        # a step may be too long for such a temperature
 
@@ -265,7 +282,8 @@ def make_overdamped(case):
     case.lines[3] = "boundary p p p" if fluid in CARRIED else "boundary f f f"
     remap = deform(case) if fluid in CARRIED else "v"
     words = case.damaged(case.words_of(OVERDAMPED, few=3))
-    case.lines += [f"pair_style stokes_dynamics cut_off_distance inf visc 1 {fluid}", "pair_coeff * *", "fix weight all addforce 0 0 -1"]
+    case.lines += [f"pair_style stokes_dynamics cut_off_distance inf visc 1 {fluid}", "pair_coeff * *",
+                   "fix weight all addforce 0 0 -1"]
     case.tried = len(case.lines)
     case.lines.append("fix move all stokes_dynamics/overdamped " + " ".join(words))
     judge_overdamped(case, words, fluid)

@@ -1,8 +1,8 @@
 """Scenes, grammar and rules of fix hydro/vans, written from its page (for fuzz.py)."""
 import os
 
-from fuzz_grammar import (ANY, BAD, COUNT, LOUD, NOT_NEGATIVE, ODD, VARIABLES, YES_NO, Choice, Counted, Field, File, Integer,
-                          Name, Number, Or, decimal, delete_something, positive)
+from fuzz_grammar import (ANY, BAD, COUNT, LOUD, NOT_NEGATIVE, ODD, VARIABLES, YES_NO, Choice, Counted, Field, File,
+                          Integer, Name, Number, Or, decimal, delete_something, positive)
 
 CELLS = 20
 GRAINS = """units si
@@ -47,15 +47,17 @@ VANS = {
     "fluid": [positive("1000"), positive("0.001")],
     "gravity": [Field(lambda v: True, ["0.5", "0", "-0.3"], atom=False), Field(lambda v: True, ["0"], atom=False),
                 Field(lambda v: True, ["-9.81", "9.81"], atom=False)],
-    "drag": [Choice("yade", "schiller_naumann", "brown_lawler", "ferguson_church", "ergun", "gidaspow", "beetstra", "koch_hill")],
+    "drag": [Choice("yade", "schiller_naumann", "brown_lawler", "ferguson_church", "ergun", "gidaspow", "beetstra",
+                    "koch_hill")],
     "added_mass": [Or(off=[], otherwise=[NOT_NEGATIVE])], "upflow": [Or(off=[], otherwise=[EQUAL])],
     "discharge": [Or(off=[], otherwise=[EQUAL])], "wall_roughness": [NOT_NEGATIVE], "wall_mixing": [YES_NO],
     "bed_mixing": [Or(off=[], otherwise=[NOT_NEGATIVE])],
-    "area": [positive("0.0004", "0.0008")], "fall_diameter": [positive("0.7", "1", "1.3")], "schmidt": [positive("0.44", "1")],
-    "adjust": [Or(slope=[], depth=[positive("0.5", "20")])],
+    "area": [positive("0.0004", "0.0008")], "fall_diameter": [positive("0.7", "1", "1.3")],
+    "schmidt": [positive("0.44", "1")], "adjust": [Or(slope=[], depth=[positive("0.5", "20")])],
     "couple": [Choice("none", "one", "two", "fluid")], "profile": [Or(zero=[], file=[File("profile.txt")])],
     "given": [Or(averaged=[], file=[File("given.txt")])], "convective": [Or(off=[], file=[File("convective.txt")])],
-    "solve": [positive("1e-3", "0.01", border=["0", "-1", "1e-6", "1e3"]), positive("1e-4", "1e-3", border=["0", "-1", "1e-9"])],
+    "solve": [positive("1e-3", "0.01", border=["0", "-1", "1e-6", "1e3"]),
+              positive("1e-4", "1e-3", border=["0", "-1", "1e-9"])],
     "stream": [Choice("steady", "rest")], "hindrance": [Or(richardson_zaki=[], di_felice=[], otherwise=[NOT_NEGATIVE])],
     "lift": [Or(off=[], otherwise=[ANY])],
     "turbulence": [Choice("none", "kz", "parabolic", "li_sawamoto", "pore", "rousseau", "ni_capart", "pipe")],
@@ -63,20 +65,25 @@ VANS = {
     "bed_average": [Integer(lambda v: v >= 1, ["1", "3"], ["0", "1000000"], odd=lambda v: v > 1e6)],
     "sublayer": [YES_NO], "viscosity": [Choice("constant", "einstein", "power")],
     "surface": [Or(free=[], speed=[EQUAL], follow=[positive("0.012")])], "pressure_gradient": [EQUAL],
-    "sidewall": [Or(off=[], otherwise=[positive("0.0065"), NOT_NEGATIVE])], "radius": [positive("0.003")], "classes": [Or(yes=[], no=[], otherwise=[Integer(lambda v: 1 <= v <= 1000, ["1", "3", "40"], ["0", "1001", "2.5"], odd=lambda v: v == 1000)])],
+    "sidewall": [Or(off=[], otherwise=[positive("0.0065"), NOT_NEGATIVE])], "radius": [positive("0.003")],
+    "classes": [Or(yes=[], no=[], otherwise=[Integer(lambda v: 1 <= v <= 1000, ["1", "3", "40"], ["0", "1001", "2.5"],
+                                                     odd=lambda v: v == 1000)])],
     "class_radii": [Counted(32, positive("0.003", "0.002"))],
     "grains": [Choice("extended", "point")], "felt": [Choice("centre", "volume")], "overlap": [Choice("twice", "once")],
     "fluctuation": [Or(none=[], correlated=[SEED, BED], uncorrelated=[SEED, BED], depth=[SEED, BED],
                        langevin=[SEED, BED])],
-    "intensity": [Or(stress=[], file=[File("convective.txt")], otherwise=[Field(lambda v: v >= 0, ["0", "0.3"], ["-0.1"], atom=False)])],
+    "intensity": [Or(stress=[], file=[File("convective.txt")],
+                     otherwise=[Field(lambda v: v >= 0, ["0", "0.3"], ["-0.1"], atom=False)])],
     "renewal": [positive("0.1", "1e-4")], "region": [Name("zone", "part", "nowhere")],
-    "average": [Name("all", "g", "nobody")], "conserve": [YES_NO], "rules": [Choice("consistent", "consistent", "yade")],
+    "average": [Name("all", "g", "nobody")], "conserve": [YES_NO],
+    "rules": [Choice("consistent", "consistent", "yade")],
 }
 
 
 def files(folder):
     """What the keywords of hydro/vans read; CELLS slices."""
-    for name, text in (("mesh.txt", "\n".join(str(0.001 * k) for k in range(CELLS + 1))), ("short.txt", "1.0\n2.0\n1.5\n"),
+    for name, text in (("mesh.txt", "\n".join(str(0.001 * k) for k in range(CELLS + 1))),
+                       ("short.txt", "1.0\n2.0\n1.5\n"),
                        ("profile.txt", "# velocities\n" + "\n".join(str(0.01 * k) for k in range(CELLS + 1))),
                        ("given.txt", "0.1 0.02 1e-4\n" * CELLS), ("full.txt", "1.2 0.02 1e-4\n" * CELLS),
                        ("convective.txt", "1e-5\n" * CELLS), ("words.txt", "a b c\n" * CELLS), ("empty.txt", "")):
@@ -101,12 +108,14 @@ def judge_vans(case, words, how):
     case.refuse_if(s("felt") == "volume" and s("grains") == "point", "felt")
     yade, couple = s("rules") == "yade", s("couple", "two")
     case.refuse_if(yade and (s("drag", "yade") != "yade" or s("hindrance") in ("richardson_zaki", "di_felice")), "drag")
-    case.refuse_if(s("drag") in ("ergun", "gidaspow", "beetstra", "koch_hill") and "hindrance" in case.settings, "hindrance")
+    case.refuse_if(s("drag") in ("ergun", "gidaspow", "beetstra", "koch_hill") and "hindrance" in case.settings,
+                   "hindrance")
     case.refuse_if(s("upflow", "off") != "off" and (yade or couple in ("none", "fluid")), "upflow")
     case.refuse_if(s("classes", "no") not in ("yes", "no") and "class_radii" in case.settings, "classes")
     held, walls = s("discharge", "off") != "off", s("sidewall", "off") != "off"
     deep = s("adjust") == "depth"
-    case.refuse_if(held and (yade or couple in ("none", "one") or s("surface") == "speed" or "pressure_gradient" in case.settings and not deep), "discharge")
+    case.refuse_if(held and (yade or couple in ("none", "one") or s("surface") == "speed" or
+                             "pressure_gradient" in case.settings and not deep), "discharge")
     case.refuse_if(deep and not (held and s("surface") == "follow"), "adjust")
     case.refuse_if("schmidt" in case.settings and s("fluctuation") != "langevin", "schmidt")
     case.refuse_if(yade and s("fluctuation") == "langevin", "fluctuation")
@@ -132,16 +141,20 @@ def judge_vans(case, words, how):
         case.refuse_if(dt > period * 1.001, "solve")
         if 0 < dt <= period and not period / dt < 1e6:
             case.says(ODD if period / dt < 1e8 else LOUD, "solve")
-    driven = "pressure_gradient" in case.settings or s("surface") == "speed" or s("profile") == "file" or s("stream") == "rest"
-    if s("gravity") is not None and decimal(s("gravity")) in (0.0, None) and (not driven or s("pressure_gradient") in ("0", "v_zero")):
+    driven = "pressure_gradient" in case.settings or s("surface") == "speed" or s("profile") == "file" or s(
+        "stream") == "rest"
+    if s("gravity") is not None and decimal(s("gravity")) in (0.0, None) and (not driven or s("pressure_gradient") in (
+        "0", "v_zero")):
         case.says(ODD, "drives")
     if s("couple") == "fluid" and s("given") == "file" and "radius" not in case.settings:
         case.says(ODD, "radius")
-    if s("class_radii") or s("rules") == "yade" or s("couple") == "fluid" and how == "no radius" or s("average") == "nobody" \
+    if s("class_radii") or s("rules") == "yade" or s("couple") == "fluid" and how == "no radius" or s(
+        "average") == "nobody" \
             or s("region") == "nowhere" or case.settings.get("class_radii"):
         case.says(ODD, "class_radii", "rules", "mesh", "average")
     numbers = [abs(decimal(w)) for words in case.settings.values() for w in words if decimal(w) is not None]
-    if any(v > 1e5 or 0 < v < 1e-5 for v in numbers):      # a scale that no stream has: anything finite or refused will do
+    # a scale that no stream has: anything finite or refused will do
+    if any(v > 1e5 or 0 < v < 1e-5 for v in numbers):
         case.says(ODD, "")
         case.extreme = True
 
@@ -166,10 +179,13 @@ def make_vans(case):
 
 def make_vans_modify(case):
     case.style = "hydro/vans"
-    case.lines = GRAINS.format(variables=VARIABLES, style="sphere", radii="set group all diameter 0.006 density 2500").split("\n")
-    case.lines.append(f"fix s all hydro/vans 1 mesh {CELLS} 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.81 solve 1e-3 1e-4")
+    case.lines = GRAINS.format(variables=VARIABLES, style="sphere",
+                               radii="set group all diameter 0.006 density 2500").split("\n")
+    case.lines.append(f"fix s all hydro/vans 1 mesh {CELLS} 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.81 "
+                      "solve 1e-3 1e-4")
     values = ["values"] + [str(0.01 * k) for k in range(CELLS + 1)]
-    others = [["gravity", "0.3", "0", "-9.81"], ["steady", "anew"], ["average"], ["solve", "1e-3", "1e-4"], ["given", "given.txt"]]
+    others = [["gravity", "0.3", "0", "-9.81"], ["steady", "anew"], ["average"], ["solve", "1e-3", "1e-4"],
+              ["given", "given.txt"]]
     words = case.damaged(case.draw.choice([["profile"] + values, ["profile", "file", "profile.txt"]] + others))
     case.tried = len(case.lines)
     case.lines.append("fix_modify s " + " ".join(words))

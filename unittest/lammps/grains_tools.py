@@ -1,10 +1,13 @@
-"""Scenes of fix sph/grains: water on a lattice of spacing 1, h = 2, density 1, with grains; and what laws of drag say of them."""
+"""Scenes of fix sph/grains: water on a lattice of spacing 1, h = 2, density 1, with grains; and what laws of drag say
+of them."""
 H = 2.0
 
 
-def scene(size, mu, c, dt, fix, grains, diameter=0.5, boundary="p p p", density=2.65, pair="central shift yes", gravity="", floor=0, newton="on",
-          before_fix="", mover="fix mg grains nve/sphere", delta=0.1, atom_style="sph sphere"):
-    """Water (type 1) fills size[0] x size[1] x size[2] spacings, with `floor` rows of wall (type 3) below; grains (type 2): commands."""
+def scene(size, mu, c, dt, fix, grains, diameter=0.5, boundary="p p p", density=2.65, pair="central shift yes",
+          gravity="", floor=0, newton="on", before_fix="", mover="fix mg grains nve/sphere", delta=0.1,
+          atom_style="sph sphere"):
+    """Water (type 1) fills size[0] x size[1] x size[2] spacings, with `floor` rows of wall (type 3) below; grains (type
+    2): commands."""
     x, y, z = size
     return f"""
     units lj

@@ -1,9 +1,9 @@
-"""The one door to several ranks: whose mpirun belongs to the LAMMPS that the tests run through, with which words, and how many ranks
-a test may ask for.
+"""The one door to several ranks: whose mpirun belongs to the LAMMPS that the tests run through, with which words, and
+how many ranks a test may ask for.
 
-With Open MPI that is any number: ranks that wait leave their core to others. Those of MPICH spin, so that on more ranks than there are
-cores a scene of a second takes minutes: there are as many as cores at most, of one test at a time; other tests do what they do on one
-rank meanwhile. A LAMMPS without MPI has one."""
+With Open MPI that is any number: ranks that wait leave their core to others. Those of MPICH spin, so that on more ranks
+than there are cores a scene of a second takes minutes: there are as many as cores at most, of one test at a time; other
+tests do what they do on one rank meanwhile. A LAMMPS without MPI has one."""
 import atexit
 import functools
 import os
@@ -13,43 +13,48 @@ import subprocess
 import sys
 import tempfile
 
-# Of an MPI library its name in `lmp -h`, names of its mpirun, what that says of itself, and words for more ranks than cores
+# Of an MPI library its name in `lmp -h`, names of its mpirun, what that says of itself, and words for more ranks than
+# cores
 FAMILIES = {"Open MPI": (["mpirun.openmpi", "mpirun"], "Open MPI|OpenRTE", ["--oversubscribe"]),
             "MPICH": (["mpirun.mpich", "mpiexec.hydra", "mpirun"], "HYDRA|MPICH", [])}
 
-# Seconds after which a program is taken for one that hangs. What takes two where nothing else runs takes a minute where ten others want
-# the core, and waits for the ranks of another test.
+# Seconds after which a program is taken for one that hangs. What takes two where nothing else runs takes a minute where
+# ten others want the core, and waits for the ranks of another test.
 PATIENCE = 900
 
-# True while a test runs that nobody knows to use several ranks (conftest.py): it would be missing where these are selected
+# True while a test runs that nobody knows to use several ranks (conftest.py): it would be missing where these are
+# selected
 undeclared = False
 
 
 @functools.lru_cache(maxsize=None)
 def scratch():
-    """Where mpirun keeps what its ranks share. In one folder for all, one that begins trips over what another, in another process of
-    tests, is just taking away."""
+    """Where mpirun keeps what its ranks share. In one folder for all, one that begins trips over what another, in
+    another process of tests, is just taking away."""
     folder = tempfile.mkdtemp(prefix="sd")
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return folder
 
 
 def environment():
-    """Ours, less what an MPI library may have put there, and leave for root to use mpirun. No LAMMPS_PLUGIN_PATH: newer LAMMPS
-    would load the plugin by itself, and the tests want to see it loaded by command. Several tests run at a time: no rank is
-    bound to a core that another one's rank is bound to as well, those that wait leave their core to others, and none spends
-    half of its start looking for the networks of clusters (ob1: memory that ranks share, or TCP). Ranks of MPICH that have asked
-    512 times in vain sleep for a moment: until then they keep a core from who has the answer, where both wait for the same one."""
+    """Ours, less what an MPI library may have put there, and leave for root to use mpirun. No LAMMPS_PLUGIN_PATH: newer
+    LAMMPS would load the plugin by itself, and the tests want to see it loaded by command. Several tests run at a time:
+    no rank is bound to a core that another one's rank is bound to as well, those that wait leave their core to others,
+    and none spends half of its start looking for the networks of clusters (ob1: memory that ranks share, or TCP). Ranks
+    of MPICH that have asked 512 times in vain sleep for a moment: until then they keep a core from who has the answer,
+    where both wait for the same one."""
     env = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI_", "LAMMPS_PLUGIN"))}
     if os.getuid() == 0:
         env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    env.update(OMP_NUM_THREADS="1", TMPDIR=scratch(), OMPI_MCA_hwloc_base_binding_policy="none", OMPI_MCA_mpi_yield_when_idle="1",
-               OMPI_MCA_pml="ob1", MPIR_CVAR_CH4_PROGRESS_THROTTLE="1", MPIR_CVAR_CH4_PROGRESS_THROTTLE_NO_PROGRESS_COUNT="512")
+    env.update(OMP_NUM_THREADS="1", TMPDIR=scratch(), OMPI_MCA_hwloc_base_binding_policy="none",
+               OMPI_MCA_mpi_yield_when_idle="1", OMPI_MCA_pml="ob1", MPIR_CVAR_CH4_PROGRESS_THROTTLE="1",
+               MPIR_CVAR_CH4_PROGRESS_THROTTLE_NO_PROGRESS_COUNT="512")
     return env
 
 
 def said(*words):
-    done = subprocess.run(words, env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    done = subprocess.run(words, env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT)
     return done.stdout.decode(errors="replace")
 
 
@@ -94,8 +99,8 @@ def allowed(*layouts):
 
 
 def one_at_a_time():
-    """The words before an mpirun of MPICH: it waits until that of another test, in another process of the same user, has ended.
-    flock is of util-linux, which every Linux has; elsewhere they do not wait."""
+    """The words before an mpirun of MPICH: it waits until that of another test, in another process of the same user,
+    has ended. flock is of util-linux, which every Linux has; elsewhere they do not wait."""
     if family() != "MPICH" or not shutil.which("flock"):
         return []
     return ["flock", "--close", os.path.join(tempfile.gettempdir(), f"stokesdyn-tests-mpirun-{os.getuid()}")]
@@ -105,6 +110,8 @@ def mpirun(ranks):
     """The words before a program that runs on so many ranks"""
     if ranks == 1:
         return []
-    assert ranks <= most(), f"{ranks} ranks where there may be {most()}: use allowed(...) or at_most(...), or mark the test: ranks({ranks})"
-    assert not undeclared, f"this test uses {ranks} ranks, and neither a name in its code nor a mark says so: @pytest.mark.ranks({ranks})"
+    assert ranks <= most(), (f"{ranks} ranks where there may be {most()}: use allowed(...) or at_most(...), "
+                             f"or mark the test: ranks({ranks})")
+    assert not undeclared, (f"this test uses {ranks} ranks, and neither a name in its code nor a mark says so: "
+                            f"@pytest.mark.ranks({ranks})")
     return one_at_a_time() + launcher() + ["-np", str(ranks)]

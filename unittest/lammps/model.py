@@ -1,7 +1,8 @@
 """The model by dense linear algebra, written from the published formulas and sharing nothing with the plugin.
 
-(I/(6 pi eta_i a_i) + Omega) F = u_inf - v, with Omega_ij of the viscosity sqrt(eta_i eta_j). With rotation the unknowns are
-forces and torques. The formulas: Zuk, Wajnryb, Mizerski & Szymczak 2014; far apart as Wajnryb, Mizerski, Zuk & Szymczak
+(I/(6 pi eta_i a_i) + Omega) F = u_inf - v, with Omega_ij of the viscosity sqrt(eta_i eta_j). With rotation the unknowns
+are forces and torques. The formulas: Zuk, Wajnryb, Mizerski & Szymczak 2014; far apart as Wajnryb, Mizerski, Zuk &
+Szymczak
 2013. Leading
 axes of x [..., n, 3] and a [..., n] are scenes of n spheres each."""
 import csv
@@ -21,7 +22,8 @@ EPSILON[0, 2, 1] = EPSILON[2, 1, 0] = EPSILON[1, 0, 2] = -1.0
 
 
 def pairs(x, a):
-    """Of each pair: R and direction of i seen from j, ai, aj, and who is in which branch. At one point: no direction."""
+    """Of each pair: R and direction of i seen from j, ai, aj, and who is in which branch. At one point: no
+    direction."""
     r = x[..., :, None, :] - x[..., None, :, :]
     R = np.linalg.norm(r, axis=-1)
     ai, aj = np.broadcast_arrays(a[..., :, None], a[..., None, :])
@@ -70,8 +72,8 @@ def spin_of_force(x, a):
 
 
 def mobility(x, a, eta, sees=None, taper=None, rotation=False):
-    """Matrix [..., 3n, 3n], with rotation [..., 6n, 6n] in the order force, torque of each sphere. sees [n,n]: who sees whom;
-    None: everybody. taper: (name, range)."""
+    """Matrix [..., 3n, 3n], with rotation [..., 6n, 6n] in the order force, torque of each sphere. sees [n,n]: who sees
+    whom; None: everybody. taper: (name, range)."""
     n, m = a.shape[-1], 6 if rotation else 3
     eta = np.broadcast_to(eta, a.shape)
     blocks = np.zeros(a.shape + (n, m, m))

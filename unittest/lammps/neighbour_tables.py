@@ -1,5 +1,5 @@
-"""The tables of neighbours (common/neighbours.h), read off the sources of a model's room and off the page, where a row is an entry
-of a list. Called by hand it prints the entries for the page."""
+"""The tables of neighbours (common/neighbours.h), read off the sources of a model's room and off the page, where a row
+is an entry of a list. Called by hand it prints the entries for the page."""
 import pathlib
 import re
 import textwrap
@@ -13,7 +13,8 @@ HEADINGS = {"stokes": "### Beside pair_style stokes_dynamics and its fixes", "sp
             "vans": "### Beside fix hydro/vans"}
 
 STRINGS = r"(?:\"(?:[^\"\\]|\\.)*\"\s*)+"
-ROW = re.compile(rf"\{{N::(?P<kind>\w+),\s*(?P<styles>{STRINGS}),\s*(?P<where>[\w\s|]+?),\s*N::(?P<verdict>\w+),\s*(?P<why>{STRINGS})")
+ROW = re.compile(rf"\{{N::(?P<kind>\w+),\s*(?P<styles>{STRINGS}),\s*(?P<where>[\w\s|]+?),"
+                 rf"\s*N::(?P<verdict>\w+),\s*(?P<why>{STRINGS})")
 
 
 def joined(strings):
@@ -53,4 +54,5 @@ if __name__ == "__main__":
     for room, heading in HEADINGS.items():
         print(f"\n{heading}\n")
         for row in rows_of_code(room):
-            print("\n".join(textwrap.wrap("* " + row, 120, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)))
+            print("\n".join(textwrap.wrap("* " + row, 120, subsequent_indent="  ", break_long_words=False,
+                                          break_on_hyphens=False)))

@@ -3,9 +3,9 @@
 
     . build/env.sh; unittest/lammps/relations.py N [SEED] [--model stokes|sph|vans] [--one NUMBER] [--ranks R]
 
-Scenes are in relations_stokes.py, relations_sph.py and relations_vans.py, changes in relations_changes.py (with the reason where
-one cannot hold). A case that fails is made smaller, one option after the other, as long as it fails, and printed as shell
-commands with both inputs. Exits with 1 if a case failed."""
+Scenes are in relations_stokes.py, relations_sph.py and relations_vans.py, changes in relations_changes.py (with the
+reason where one cannot hold). A case that fails is made smaller, one option after the other, as long as it fails, and
+printed as shell commands with both inputs. Exits with 1 if a case failed."""
 import argparse
 import collections
 import os
@@ -36,7 +36,7 @@ def most_ranks():
     return host.at_most(3)
 
 
-# --- an input ----------------------------------------------------------------------------------------------------------------
+# --- an input ---------------------------------------------------------------------------------------------------------
 
 def commands(scene, frame, ranks=1, newton="on", grid="", tiled=False, skin=0.0, sort="", pieces="", again=0, hybrid="",
              twice=""):
@@ -44,7 +44,8 @@ def commands(scene, frame, ranks=1, newton="on", grid="", tiled=False, skin=0.0,
     def write(lines):
         return [word for line in lines for word in frame.write(line).split("\n")]
 
-    head = scene.head + [f"newton {newton}", "atom_modify map array" + f" sort {sort}" * bool(sort), "plugin load stokesdynplugin.so"]
+    head = scene.head + [f"newton {newton}", "atom_modify map array" + f" sort {sort}" * bool(sort),
+                         "plugin load stokesdynplugin.so"]
     head += [f"processors <each {grid}>"] * bool(grid) + ["comm_style tiled"] * tiled
     begin = write(head + scene.make) + scene.create(frame) + write(scene.after + scene.groups)
     define = [re.sub("^neighbor <L .*?>", f"neighbor <L {skin}>", line) if skin else line for line in scene.define]
@@ -52,13 +53,16 @@ def commands(scene, frame, ranks=1, newton="on", grid="", tiled=False, skin=0.0,
     balance, fixes, pair = ["balance 1.1 rcb"] * tiled, write(scene.fixes), scene.pair_lines(hybrid)
     if twice:
         body = write(define + scene.pair_lines(hybrid, frame.write(scene.other) if twice == "other" else None)) + fixes
-        body += ["run 0 post no"] + write(pair) + ["print \"$(%s)\"" % scene.output_between] * bool(scene.output_between)
+        body += (["run 0 post no"] + write(pair) + ["print \"$(%s)\"" % scene.output_between] *
+                 bool(scene.output_between))
     else:
         body = write(define + pair) + fixes
     output, n = write(scene.output()), scene.steps
     if pieces == "restart":
-        resumed = write([line for line in head if not line.startswith(("units", "atom_style"))]) + ["read_restart between"]
-        resumed += write(define + (pair if hybrid or len(scene.pair) > 1 else [])) + fixes + output + [f"run {n - n // 2}"]
+        resumed = (write([line for line in head if not line.startswith(("units", "atom_style"))]) +
+                   ["read_restart between"])
+        resumed += write(define + (pair if hybrid or len(scene.pair) > 1 else [])) + fixes + output + [
+            f"run {n - n // 2}"]
         first = begin + balance + body + write(scene.late) + output + [f"run {n // 2}", "write_restart between"]
         return [(ranks, first), (again or ranks, resumed)]
     runs = {"two": [n // 2, n - n // 2], "ones": [1] * n, "zero": [0, n]}.get(pieces, [n])
@@ -86,12 +90,14 @@ def run(scene, frame, how):
 
 
 def rows_of(path, scene, frame):
-    """{step: rows of the atoms that the scene began with}, in their order of the scene's own numbers; nan: an atom that has left"""
+    """{step: rows of the atoms that the scene began with}, in their order of the scene's own numbers; nan: an atom that
+    has left"""
     frames, old = {}, {frame.new_id(k): k for k in range(1, len(scene.atoms) + 1)}
     with open(path) as file:
         parts = file.read().split("ITEM: TIMESTEP\n")[1:]
     for part in parts:
-        rows = frames.setdefault(int(part.split()[0]), np.full((len(scene.atoms), sum(len(w.split()) for _, w in scene.columns)), np.nan))
+        rows = frames.setdefault(int(part.split()[0]),
+                                 np.full((len(scene.atoms), sum(len(w.split()) for _, w in scene.columns)), np.nan))
         for line in part[part.index("ITEM: ATOMS"):].splitlines()[1:]:
             words = line.split()
             if int(words[0]) in old:
@@ -106,7 +112,8 @@ def read(scene, frame, folder, log):
         at = 0
         for kind, words in scene.columns:
             width = len(words.split())
-            values["atoms: " + words, kind, step] = frame.back(kind, rows[:, at:at + width] if width > 1 else rows[:, at])
+            values["atoms: " + words, kind, step] = frame.back(kind, rows[:, at:at + width] if width > 1
+                                                               else rows[:, at])
             at += width
     wide = 1 + sum(len(words.split()) for _, words in scene.globals)
     for line in log.splitlines():
@@ -115,7 +122,8 @@ def read(scene, frame, folder, log):
             at = 1
             for kind, words in scene.globals:
                 width = len(words.split())
-                values["thermo: " + words, kind, int(numbers[0])] = frame.back(kind, [float(w) for w in numbers[at:at + width]])
+                values["thermo: " + words, kind,
+                       int(numbers[0])] = frame.back(kind, [float(w) for w in numbers[at:at + width]])
                 at += width
     if scene.grid:
         velocity = Image(os.path.join(folder, f"flow.{scene.steps}.vti"))["velocity"]
@@ -133,11 +141,12 @@ def differences(scene, a, b):
             continue
         gone = np.isnan(x) & np.isnan(y)
         scale = max(scene.length if key[1] == "p" else np.abs(x[~gone]).max(initial=0.0), scene.floor)
-        found.append((float(np.nan_to_num(np.abs(x - y)[~gone], nan=np.inf).max(initial=0.0) / scale), f"{key[0]} in step {key[2]}"))
+        found.append((float(np.nan_to_num(np.abs(x - y)[~gone], nan=np.inf).max(initial=0.0) / scale),
+                      f"{key[0]} in step {key[2]}"))
     return sorted(found, reverse=True)
 
 
-# --- a case ------------------------------------------------------------------------------------------------------------------
+# --- a case -----------------------------------------------------------------------------------------------------------
 
 class Case:
     """options: of the scene, in full; names: the changes"""
@@ -196,7 +205,8 @@ class Case:
             for name, values in module.OPTIONS.items():
                 k = values.index(case.options[name]) if case.options[name] in values else 0
                 for simple in dict.fromkeys(values[:k]):
-                    smaller.append(Case(case.model, case.seed, module.lawful(dict(case.options, **{name: simple})), case.names))
+                    smaller.append(Case(case.model, case.seed, module.lawful(dict(case.options, **{name: simple})),
+                                        case.names))
             for other in smaller:
                 if (other.options, other.names) == (case.options, case.names) or time.time() > end:
                     continue
@@ -218,7 +228,8 @@ class Case:
         for name, inputs in (("one", commands(self.scene(), Frame())), ("other", commands(scene, frame, **how))):
             text.append(f"mkdir -p {name}; cd {name}")
             for k, (ranks, lines) in enumerate(inputs):
-                text += [f"cat > in.{k} << 'END'"] + lines + ["END", " ".join(host.mpirun(ranks) + ["lmp", "-in", f"in.{k}"])]
+                text += [f"cat > in.{k} << 'END'"] + lines + ["END",
+                                                              " ".join(host.mpirun(ranks) + ["lmp", "-in", f"in.{k}"])]
             text.append("cd ..")
         return "\n".join(text)
 
@@ -236,8 +247,8 @@ def judge(seed, numbers, most, model=None, tell=lambda *words: None):
         tell(number, what or "holds", case.title(), why)
         if what in ("differs", "breaks"):
             small = case.reduced()
-            failures.append("\n".join([f"case {number} of seed {seed} {what}: {case.title()}", why, f"smallest: {small.title()}",
-                                       small.judge()[1], small.script()]))
+            failures.append("\n".join([f"case {number} of seed {seed} {what}: {case.title()}", why,
+                                       f"smallest: {small.title()}", small.judge()[1], small.script()]))
             tell(failures[-1])
     return failures, ran
 
@@ -258,7 +269,8 @@ def main():
                           lambda *words: print(*words, flush=True))
     for name, count in sorted(ran.items()):
         print(f"{count:6d} {name}")
-    print(f"{ran['judged']} cases judged, {ran['refused']} refused, {len(failures)} failed, {time.time() - began:.0f} s")
+    print(f"{ran['judged']} cases judged, {ran['refused']} refused, {len(failures)} failed, "
+          f"{time.time() - began:.0f} s")
     return 1 if failures else 0
 
 

@@ -1,8 +1,8 @@
 """Changes of an input that must not matter (for relations.py), and which of them cannot hold where, with the reason.
 
-A change is a dictionary that joins others: entries of `how` say how LAMMPS is run (relations.commands), `frame` is a Frame that
-moves the whole input, `options` are options of the scene that make the same physics in another way. loose: by how much the
-tolerance of the scene is too small for it."""
+A change is a dictionary that joins others: entries of `how` say how LAMMPS is run (relations.commands), `frame` is a
+Frame that moves the whole input, `options` are options of the scene that make the same physics in another way. loose:
+by how much the tolerance of the scene is too small for it."""
 import random
 
 import numpy as np
@@ -27,21 +27,26 @@ PIECES = {
     "restart from 2 on 3": change(pieces="restart", ranks=2, again=3),
 }
 STYLES = {
-    "hybrid": change(hybrid="hybrid"), "overlay before": change(hybrid="before"), "overlay after": change(hybrid="after"),
-    "pair style twice": change(twice="same"), "another pair style before": change(twice="other"),
+    "hybrid": change(hybrid="hybrid"), "overlay before": change(hybrid="before"),
+    "overlay after": change(hybrid="after"), "pair style twice": change(twice="same"),
+    "another pair style before": change(twice="other"),
 }
 FRAMES = {
-    "shift": change(frame=lambda s: Frame(shift=s.spacing * np.array((3.3, -5.1, 0.0 if s.model == "sph 2-D" else 7.7)))),
+    "shift": change(frame=lambda s: Frame(shift=s.spacing *
+                                          np.array((3.3, -5.1, 0.0 if s.model == "sph 2-D" else 7.7)))),
     "turn": change(frame=lambda s: Frame(R=turned("y", "-x", "z") if s.model == "sph 2-D" else turned("y", "z", "x"))),
-    "turn back": change(frame=lambda s: Frame(R=turned("-y", "x", "z") if s.model == "sph 2-D" else turned("x", "-z", "y"))),
+    "turn back": change(frame=lambda s: Frame(R=turned("-y", "x", "z") if s.model == "sph 2-D"
+                                              else turned("x", "-z", "y"))),
     "mirror": change(frame=lambda s: Frame(R=turned("x", "-y", "z"))),
-    "mirror at the wall": change(frame=lambda s: Frame(R=turned("x", "-y", "z") if s.model == "sph 2-D" else turned("x", "y", "-z"))),
+    "mirror at the wall": change(frame=lambda s: Frame(R=turned("x", "-y", "z") if s.model == "sph 2-D"
+                                                       else turned("x", "y", "-z"))),
     "renumbered": change(frame=lambda s: Frame(order=shuffled(s, lambda a: 0))),
     "members": change(frame=lambda s: Frame(order=members(s))),
     "units": change(frame=lambda s: Frame(scale=(1000.0, 40.0, 0.3))),
     "small units": change(frame=lambda s: Frame(scale=(1e-3, 0.02, 1e-4))),
 }
-ENGINES = {"direct": change(options={"far": "direct"}, loose=10.0), "ewald": change(options={"far": "ewald"}, loose=10.0)}
+ENGINES = {"direct": change(options={"far": "direct"}, loose=10.0),
+           "ewald": change(options={"far": "ewald"}, loose=10.0)}
 CHANGES = {**LAYOUT, **PIECES, **STYLES, **FRAMES, **ENGINES}
 KINDS = (LAYOUT, PIECES, STYLES, FRAMES, ENGINES)
 
@@ -72,29 +77,36 @@ RESTARTS = tuple(name for name in PIECES if name.startswith("restart"))
 # (changes, where they cannot hold, why)
 EXCEPTIONS = [
     (TURNS, triclinic, "LAMMPS has triclinic boxes of one orientation only"),
-    (TURNS + ("renumbered", "members"), lambda o: o.get("noise") == "yes", "random numbers belong to atom IDs and to the axes x, y, z"),
+    (TURNS + ("renumbered", "members"),
+     lambda o: o.get("noise") == "yes", "random numbers belong to atom IDs and to the axes x, y, z"),
     (("renumbered",), lambda o: o.get("fluctuation", "none") != "none", "random numbers belong to atom IDs"),
     (TURNS, lambda o: o["model of"] == "vans", "the stream runs along x, and z is up"),
     (("grid 1 1 2",), lambda o: o.get("dim") == 2, "two dimensions"),
-    (TURNS, lambda o: o.get("look") == "virial" and (o["viscosity"] == "laplacian" or o["scheme"] in ("shift", "pliant", "correction")),
+    (TURNS, lambda o: o.get("look") == "virial" and
+     (o["viscosity"] == "laplacian" or o["scheme"] in ("shift", "pliant", "correction")),
      "forces that are not along the line of centres: of their virial LAMMPS has six numbers of nine"),
     (TURNS, lambda o: o.get("look") == "height", "a height is measured along +AXIS"),
     (("members",), lambda o: not o.get("clumps"), "no clumps"),
     (("pair style twice",), lambda o: o.get("grains") == "yes" and o["space"] == "tank",
      "the volume of wall particles is that of the pressure of the step before, and of the input in the first"),
-    (CUTS + ("pair style twice",), lambda o: o.get("space") == "body", "fix rigid ... gravity of LAMMPS begins each run with half a step without weight"),
-    (CUTS, lambda o: "forces" in o.get("motion", "") and (o["flow"] in ("shear", "time", "box") or o["visc"] == "formula"),
+    (CUTS + ("pair style twice",), lambda o: o.get("space") ==
+     "body", "fix rigid ... gravity of LAMMPS begins each run with half a step without weight"),
+    (CUTS, lambda o: "forces" in o.get("motion", "") and
+     (o["flow"] in ("shear", "time", "box") or o["visc"] == "formula"),
      "LAMMPS's Verlet has other velocities in the first step of a run; the page asks for numbers"),
     (("direct", "ewald"), lambda o: o["model of"] != "stokes" or o["pairs"] != "inf", "no sum over all pairs"),
     (("direct",), lambda o: o.get("space") in ("periodic", "tilt", "deform") or o.get("far") == "direct",
      "periodic boxes have Ewald sums only"),
-    (("ewald",), lambda o: o.get("far") == "ewald" or o.get("space") == "wall" and not o["model"].startswith("multiblob"),
-     "there already, or refused above a wall with one point per sphere that turns"),
+    (("ewald",), lambda o: o.get("far") == "ewald" or o.get("space") == "wall" and
+     not o["model"].startswith("multiblob"), "there already, or refused above a wall with one point per "
+                                             "sphere that turns"),
     (("direct", "ewald"), lambda o: o.get("noise") == "yes", "each engine draws its own numbers"),
     (("another pair style before",), lambda o: o.get("space") in ("floor", "slit", "flux"),
      "the other one has rigid clumps, which need rotation, which one-point spheres have not there"),
-    (("another pair style before",), lambda o: o["model of"] != "stokes", "SPH keeps rates in its fixes; the stream has no pair style"),
-    (("pair style twice", "another pair style before"), lambda o: o.get("adapt") == "yes", "adapt goes on from the time step that it has chosen"),
+    (("another pair style before",),
+     lambda o: o["model of"] != "stokes", "SPH keeps rates in its fixes; the stream has no pair style"),
+    (("pair style twice", "another pair style before"),
+     lambda o: o.get("adapt") == "yes", "adapt goes on from the time step that it has chosen"),
     (CUTS, lambda o: o.get("adapt") == "yes" and o["flow"] == "time",
      "a formula of step*dt is that of another time when a run begins with a time step that was chosen since"),
     (("units", "small units"), lambda o: o.get("state") == "absolut" and o.get("look") == "energy",
@@ -111,7 +123,8 @@ CLASHES = [(RESTARTS, tuple(STYLES), lambda o: o["model of"] == "vans",
 
 # (changes, where, tolerance, why): what matters, but not much
 COARSE = [
-    (TURNS + ("renumbered", "members"), lambda o: o.get("model", "").startswith("multiblob") or o.get("rigid") == "shell", 0.2,
+    (TURNS + ("renumbered", "members"), lambda o: o.get("model", "").startswith("multiblob") or
+     o.get("rigid") == "shell", 0.2,
      "the points of a shell stand in the axes x, y, z, or in those of the clump that had its shape first"),
     (TURNS + ("renumbered", "members"), lambda o: o.get("drive") == "squirm" and o.get("clumps"), 1.0,
      "and the slip of a swimmer that overlaps another one pushes on those few points of it that are near"),
@@ -120,7 +133,8 @@ COARSE = [
 
 def coarse(names, options):
     """The tolerance of what the changes may do by right, or 0"""
-    return max([tolerance for which, where, tolerance, _ in COARSE if set(which) & set(names) and where(options)], default=0.0)
+    return max([tolerance for which, where, tolerance, _ in COARSE if set(which) & set(names) and where(options)],
+               default=0.0)
 
 
 def reason(name, options):

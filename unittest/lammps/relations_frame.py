@@ -1,5 +1,5 @@
-"""The numbers of an input with what they are, so that the whole of it can be shifted, turned, mirrored, renumbered or told in
-other units, and its output brought back (for relations.py).
+"""The numbers of an input with what they are, so that the whole of it can be shifted, turned, mirrored, renumbered or
+told in other units, and its output brought back (for relations.py).
 
 A line of a scene holds marks such as <F 0 0 -1>, a force along -z. `write` puts the words of one frame in their place:
 
@@ -8,18 +8,21 @@ A line of a scene holds marks such as <F 0 0 -1>, a force along -z. `write` puts
     <face zlo>, <axis z>                                    <each p p f>        a word for each axis
     <block 0 1 INF INF 2 3>                                 <planes x 0 NULL>   xplane 0 NULL
     <corners -1 1 ...>  lo x y z hi x y z
-    <ids 1 4>           IDs of atoms                        <one P f>           a formula in X, Y, Z, TIME, as a number of the kind
+    <ids 1 4>           IDs of atoms                        <one P f>           a formula in X, Y, Z, TIME, as a number
+                                                            of the kind
     <field u V f g h>   a whole line: variables ux, uy, uz of atom style, a vector of formulas"""
 import re
 
 import numpy as np
 
 # powers of length, time, mass
-KINDS = {"1": (0, 0, 0), "turn": (0, 0, 0), "L": (1, 0, 0), "p": (1, 0, 0), "area": (2, 0, 0), "t": (0, 1, 0), "rate": (0, -1, 0), "m": (0, 0, 1),
-         "V": (1, -1, 0), "V2": (2, -2, 0), "A": (1, -2, 0), "W": (0, -1, 0), "nu": (2, -1, 0), "F": (1, -2, 1), "Q": (2, -2, 1),
+KINDS = {"1": (0, 0, 0), "turn": (0, 0, 0), "L": (1, 0, 0), "p": (1, 0, 0), "area": (2, 0, 0), "t": (0, 1, 0),
+         "rate": (0, -1, 0), "m": (0, 0, 1), "V": (1, -1, 0), "V2": (2, -2, 0), "A": (1, -2, 0), "W": (0, -1, 0),
+         "nu": (2, -1, 0), "F": (1, -2, 1), "Q": (2, -2, 1),
          "k": (0, -2, 1), "E": (2, -2, 1), "power": (2, -3, 1), "slope": (-2, -2, 1), "curvature": (-1, 0, 0),
          "rho": (-3, 0, 1), "P": (-1, -2, 1), "stress": (-1, -2, 1), "eta": (-1, -1, 1), "drho": (-3, -1, 1),
-         "rho2": (-2, 0, 1), "P2": (0, -2, 1), "stress2": (0, -2, 1), "eta2": (0, -1, 1), "drho2": (-2, -1, 1)}   # in two dimensions
+         # in two dimensions
+         "rho2": (-2, 0, 1), "P2": (0, -2, 1), "stress2": (0, -2, 1), "eta2": (0, -1, 1), "drho2": (-2, -1, 1)}
 AXIAL = ("W", "Q", "turn")
 AXES, SIDES = "xyz", ("lo", "hi")
 
@@ -33,7 +36,8 @@ def turned(*axes):
 
 
 class Frame:
-    """x' = size (R x + shift); scale: how much larger the numbers of lengths, times and masses are; order: who is atom 1, 2, ..."""
+    """x' = size (R x + shift); scale: how much larger the numbers of lengths, times and masses are; order: who is atom
+    1, 2, ..."""
 
     def __init__(self, R=None, shift=(0.0, 0.0, 0.0), scale=(1.0, 1.0, 1.0), order=None):
         self.R, self.shift, self.scale, self.order = np.eye(3) if R is None else R, np.array(shift, float), scale, order
@@ -56,7 +60,8 @@ class Frame:
         """lo hi of each axis, in the new order"""
         new = [None] * 3
         for k in range(3):
-            pair = [w if w in ("INF", "NULL", "EDGE") else repr(float(self.coordinate(AXES[k], float(w)))) for w in words[2 * k:2 * k + 2]]
+            pair = [w if w in ("INF", "NULL", "EDGE") else repr(float(self.coordinate(AXES[k], float(w))))
+                    for w in words[2 * k:2 * k + 2]]
             new[self.where[k]] = pair if self.sign[k] > 0 else pair[::-1]
         return new
 
@@ -67,7 +72,8 @@ class Frame:
     def formula(self, kind, text):
         for k, name in enumerate("XYZ"):
             new, L = self.where[k], self.scale[0]
-            text = re.sub(rf"\b{name}\b", f"({self.sign[k] / L!r}*{AXES[new]}-({float(self.sign[k] * self.shift[new])!r}))", text)
+            text = re.sub(rf"\b{name}\b",
+                          f"({self.sign[k] / L!r}*{AXES[new]}-({float(self.sign[k] * self.shift[new])!r}))", text)
         text = re.sub(r"\bTIME\b", f"({1 / self.scale[1]!r}*step*dt)", text)
         return f"{self.factor(kind)!r}*({text})"
 
@@ -125,7 +131,8 @@ class Frame:
         if kind.startswith("stress") and values.shape[-1] == 6:
             index = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
             S = self.R.T @ values[..., index] @ self.R
-            return np.stack([S[..., 0, 0], S[..., 1, 1], S[..., 2, 2], S[..., 0, 1], S[..., 0, 2], S[..., 1, 2]], axis=-1)
+            return np.stack([S[..., 0, 0], S[..., 1, 1], S[..., 2, 2], S[..., 0, 1], S[..., 0, 2], S[..., 1, 2]],
+                            axis=-1)
         if values.ndim == 0 or values.shape[-1] != 3:
             return values
         if kind == "p":

@@ -1,8 +1,10 @@
-"""A scene of relations.py: atoms, and the lines of an input with marks (relations_frame.py), by what a restart needs of them."""
+"""A scene of relations.py: atoms, and the lines of an input with marks (relations_frame.py), by what a restart needs of
+them."""
 
 
 def until_settled(rules):
-    """lawful(o) of rules(o, no): a copy of the options o, changed by no(condition, option=value ...) until nothing changes any more."""
+    """lawful(o) of rules(o, no): a copy of the options o, changed by no(condition, option=value ...) until nothing
+    changes any more."""
     def lawful(o):
         o, was = dict(o), None
 
@@ -21,7 +23,8 @@ def until_settled(rules):
 class Scene:
     def __init__(self, model, options, seed):
         self.model, self.options, self.seed = model, options, seed
-        self.atoms, self.head, self.make, self.after, self.groups, self.define, self.pair, self.fixes = [], [], [], [], [], [], [], []
+        self.atoms, self.head, self.make, self.after = [], [], [], []
+        self.groups, self.define, self.pair, self.fixes = [], [], [], []
         self.late = []                                  # after the fixes, not again after a restart
         self.columns, self.globals = [], []             # (kind, words of dump or thermo)
         self.other = None                               # words of another pair style for the same scene
@@ -60,7 +63,8 @@ class Scene:
         return [frame.write(line) for line in lines]
 
     def pair_lines(self, hybrid, words=None):
-        """hybrid: none, "hybrid", "before" or "after": hybrid/overlay with pair_style zero there. words: others for our style"""
+        """hybrid: none, "hybrid", "before" or "after": hybrid/overlay with pair_style zero there. words: others for our
+        style"""
         styles = [(n, w if words is None or n != self.pair[-1][0] else words, c) for n, w, c in self.pair]
         if len(styles) == 1 and not hybrid:
             (name, style, coeff), = styles
@@ -71,12 +75,14 @@ class Scene:
         if hybrid == "after":
             styles = styles + [zero]
         first = "hybrid" if len(styles) == 1 else "hybrid/overlay"
-        coefficients = [f"pair_coeff {types} {n} {words}" for n, _, c in styles for types, words in ([("* *", c)] if isinstance(c, str) else c)]
+        coefficients = [f"pair_coeff {types} {n} {words}" for n, _,
+                        c in styles for types, words in ([("* *", c)] if isinstance(c, str) else c)]
         return [f"pair_style {first} " + " ".join(f"{n} {w}" for n, w, _ in styles)] + coefficients
 
     def output(self):
         names = " ".join(words for _, words in self.columns)
-        more = ["thermo_style custom step " + " ".join(words for _, words in self.globals), "thermo_modify format float %.17g norm no"]
+        more = ["thermo_style custom step " + " ".join(words for _, words in self.globals),
+                "thermo_modify format float %.17g norm no"]
         if self.grid:
             n, lo, hi = self.grid
             ends = [str(v) for pair in zip(lo, hi) for v in pair]

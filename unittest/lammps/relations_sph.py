@@ -1,18 +1,20 @@
-"""Scenes of pair_style sph/artVisc/tensCorr for relations.py: full boxes, drops, tanks, columns that fall, channels, open ends, bodies."""
+"""Scenes of pair_style sph/artVisc/tensCorr for relations.py: full boxes, drops, tanks, columns that fall, channels,
+open ends, bodies."""
 import random
 from itertools import product
 
 from relations_scene import Scene, until_settled
 
 OPTIONS = {
-    "dim": [2, 2, 3], "wide": [1, 1, 1, 2], "space": ["full", "drop", "tank", "tank", "column", "channel", "ends", "body"],
-    "scheme": ["plain", "delta", "shift", "shift", "pliant", "correction", "summation"], "volume": ["no", "no", "yes"], "fluids": [1, 1, 2],
-    "kernel": ["wendland", "cubicspline"], "artVisc": ["no", "yes"], "tensCorr": ["no", "no", "yes"],
-    "viscosity": ["no", "central", "laplacian"], "rheology": ["no", "no", "bingham", "carreau"],
-    "implicit": ["no", "no", "yes"], "filter": ["no", "no", "yes"],
+    "dim": [2, 2, 3], "wide": [1, 1, 1, 2], "space": ["full", "drop", "tank", "tank", "column", "channel", "ends",
+                                                      "body"],
+    "scheme": ["plain", "delta", "shift", "shift", "pliant", "correction", "summation"], "volume": ["no", "no", "yes"],
+    "fluids": [1, 1, 2], "kernel": ["wendland", "cubicspline"], "artVisc": ["no", "yes"],
+    "tensCorr": ["no", "no", "yes"], "viscosity": ["no", "central", "laplacian"],
+    "rheology": ["no", "no", "bingham", "carreau"], "implicit": ["no", "no", "yes"], "filter": ["no", "no", "yes"],
     "state": ["Tait", "Tait", "tension no", "relativ", "absolut"],
-    "wall": ["at rest", "slip", "suction no", "moving", "own"], "plane": ["no", "no", "plane", "region"], "gravity": ["no", "yes"],
-    "grains": ["no", "no", "yes"], "tension": ["no", "no", "yes"],
+    "wall": ["at rest", "slip", "suction no", "moving", "own"], "plane": ["no", "no", "plane", "region"],
+    "gravity": ["no", "yes"], "grains": ["no", "no", "yes"], "tension": ["no", "no", "yes"],
     "look": ["nothing", "energy", "probe", "virial", "height"], "skin": [0.3, 0.15], "steps": [2, 5, 9],
 }
 WALLED = ("tank", "column", "channel", "body")
@@ -23,8 +25,9 @@ def lawful(o, no):
     """What does not go together, by the pages."""
     # surface tension
     no(o["space"] == "drop", tension="yes")
-    no(o["tension"] == "yes", scheme="pliant" if o["scheme"] == "pliant" else "shift", volume="no", fluids=1, grains="no",
-       space={"full": "drop", "channel": "tank"}.get(o["space"], o["space"]), state="Tait" if o["state"] == "absolut" else o["state"])
+    no(o["tension"] == "yes", scheme="pliant" if o["scheme"] == "pliant" else "shift", volume="no", fluids=1,
+       grains="no", space={"full": "drop", "channel": "tank"}.get(o["space"], o["space"]),
+       state="Tait" if o["state"] == "absolut" else o["state"])
     no(o["space"] in ("ends", "body"), dim=2)
     no(o["dim"] == 2, wide=1)
     no(o["scheme"] == "correction" and o["space"] not in ("full", "channel"), space="channel")
@@ -38,7 +41,8 @@ def lawful(o, no):
     no(o["volume"] == "yes", tensCorr="no", filter="no")
     no(o["fluids"] == 2, volume="yes" if o["scheme"] != "summation" else "no", filter="no")
     no(o["fluids"] == 2 and (o["scheme"] == "summation" or o["space"] in ("ends", "body")), fluids=1)
-    no(o["state"] == "absolut" and (o["fluids"] == 2 or o["space"] == "ends"), state="Tait")    # at an outlet the water would meet a vacuum
+    # at an outlet the water would meet a vacuum
+    no(o["state"] == "absolut" and (o["fluids"] == 2 or o["space"] == "ends"), state="Tait")
     no(o["space"] not in WALLED, wall="at rest")
     no(o["space"] == "body", wall="own")
     no(o["space"] != "body" and o["wall"] == "own" and o["scheme"] == "summation", wall="at rest")
@@ -48,16 +52,19 @@ def lawful(o, no):
     no(o["viscosity"] == "no", rheology="no", implicit="no")
     no(o["space"] == "body", gravity="yes")
     # grains smaller than h
-    no(o["grains"] == "yes", dim=3, scheme="delta" if o["scheme"] in ("plain", "correction", "summation") else o["scheme"], volume="yes", fluids=1,
-       rheology="no", implicit="no", plane="no", look="nothing", wall="at rest", space="full" if o["space"] == "full" else "tank",
+    no(o["grains"] == "yes", dim=3, scheme="delta" if o["scheme"] in ("plain", "correction", "summation")
+       else o["scheme"], volume="yes", fluids=1, rheology="no", implicit="no", plane="no", look="nothing",
+       wall="at rest", space="full" if o["space"] == "full" else "tank",
        viscosity="laplacian" if o["viscosity"] == "laplacian" else "central")
-    no(o["space"] == "body" and o["look"] == "virial", look="energy")     # that of fix rigid depends on where the origin is
+    # that of fix rigid depends on where the origin is
+    no(o["space"] == "body" and o["look"] == "virial", look="energy")
 
 
 # number of cells along x, y, z in two and three dimensions; which sides are periodic
 # (y twice as large with wide 2: so many ghosts that buffers are not large by chance)
 SIZES = {"full": ((20, 10, 1), (10, 8, 8)), "tank": ((20, 10, 1), (9, 8, 6)), "column": ((24, 10, 1), (12, 8, 7)),
-         "drop": ((20, 14, 1), (11, 10, 10)), "channel": ((20, 8, 1), (9, 8, 6)), "ends": ((16, 8, 1), None), "body": ((14, 9, 1), None)}
+         "drop": ((20, 14, 1), (11, 10, 10)), "channel": ((20, 8, 1), (9, 8, 6)), "ends": ((16, 8, 1), None),
+         "body": ((14, 9, 1), None)}
 OPEN_X = ("column", "ends")
 BODY = [(x, y) for x in (5, 6, 7, 8) for y in (5, 6, 7)]
 
@@ -91,7 +98,8 @@ def kinds_of_cells(o):
 def in_drop(o, cell):
     """Two drops, one of them across a periodic edge"""
     size = size_of(o)[:o["dim"]]
-    middle = [sum((c + 0.5 - at * n) ** 2 for c, n, at in zip(cell, size, where)) for where in ((0.4, 0.4, 0.5), (0.9, 1.05, 0.9))]
+    middle = [sum((c + 0.5 - at * n) ** 2 for c, n, at in zip(cell, size, where))
+              for where in ((0.4, 0.4, 0.5), (0.9, 1.05, 0.9))]
     return middle[0] < 4.2**2 or middle[1] < 1.6**2
 
 
@@ -114,7 +122,8 @@ def add_grains(s, o, R):
     size = size_of(o)
     for cell in product(range(1, size[0] - 1, 2), range(1, size[1] - 1, 2), range(1, size[2] - 2, 2)):
         if R.random() < 0.6:
-            s.atom([c + R.uniform(0.3, 0.7) for c in cell], [R.uniform(-0.2, 0.2) for _ in range(3)], 5, diameter=R.uniform(0.3, 0.65), density=2.65)
+            s.atom([c + R.uniform(0.3, 0.7) for c in cell], [R.uniform(-0.2, 0.2) for _ in range(3)], 5,
+                   diameter=R.uniform(0.3, 0.65), density=2.65)
 
 
 def build(options, seed):
@@ -143,7 +152,8 @@ def commands(s, o, d, up, lo, hi, each):
     s.head = ["units lj", f"dimension {o['dim']}", "atom_style hybrid sph sphere" if grains else "atom_style sph"]
     s.head += ["comm_modify vel yes"] * grains
     spans = " ".join(f"{a!r} {b!r}" for a, b in zip(lo, hi))
-    s.make = [f"boundary <each {' '.join(each)}>", f"region box block <block {spans}>", f"create_box {5 if grains else 4} box"]
+    s.make = [f"boundary <each {' '.join(each)}>", f"region box block <block {spans}>",
+              f"create_box {5 if grains else 4} box"]
     s.after = ["mass * <m 1.0>"]
     s.groups = ["group grains type 5", "group moves type 1 4 5"] * grains
     s.groups += ["group fluid type 1 4", "group wall type 2 3", "group first type 1 2 3", "group second type 4"]
@@ -159,9 +169,10 @@ def commands(s, o, d, up, lo, hi, each):
     coefficients = "c <V 10>" + " deltap <L 1.0>" * shifts
     s.pair = [("sph/artVisc/tensCorr", words, coefficients)]
     if grains:
-        s.pair = [("soft", "<L 0.6>", [("* *", "<E 0.0>"), ("5 5", "<E 0.5>")]), ("sph/artVisc/tensCorr", words, [("1*4 1*4", coefficients)])]
-    state = {"Tait": f"Tait <P{d} 14.2857> <rho{d} 1.0> 7", "relativ": f"relativ <V2 100> <rho{d} 1.0>", "absolut": "absolut <V 10>",
-             "tension no": f"Tait <P{d} 14.2857> <rho{d} 1.0> 7 tension no"}[o["state"]]
+        s.pair = [("soft", "<L 0.6>", [("* *", "<E 0.0>"), ("5 5", "<E 0.5>")]),
+                  ("sph/artVisc/tensCorr", words, [("1*4 1*4", coefficients)])]
+    state = {"Tait": f"Tait <P{d} 14.2857> <rho{d} 1.0> 7", "relativ": f"relativ <V2 100> <rho{d} 1.0>",
+             "absolut": "absolut <V 10>", "tension no": f"Tait <P{d} 14.2857> <rho{d} 1.0> 7 tension no"}[o["state"]]
     pull = [0.0, 0.0, 0.0]
     pull[up] = -0.1 if o["gravity"] == "yes" else 0.0
     weight = "<A {} {} {}>".format(*pull)
@@ -178,7 +189,8 @@ def commands(s, o, d, up, lo, hi, each):
     s.fixes += [f"fix g {'moves' if grains else 'fluid'} gravity <A 0.1> vector {direction}"] * (o["gravity"] == "yes")
     if walled:
         s.fixes.append("fix w wall wall/adami/sph" + f" gravity {weight}" * (o["gravity"] == "yes")
-                       + {"slip": " slip yes", "suction no": " suction no", "own": " own_acceleration yes"}.get(o["wall"], ""))
+                       + {"slip": " slip yes", "suction no": " suction no",
+                          "own": " own_acceleration yes"}.get(o["wall"], ""))
         if o["wall"] in ("moving", "own"):
             s.groups.append("group tank type 2")
             s.fixes.append("fix tug tank move wiggle <L 0.3 0.0 0.0> <t 2.0>")
@@ -205,7 +217,8 @@ def commands(s, o, d, up, lo, hi, each):
     s.columns += [("drho" + d, "f_d")] * (o["scheme"] != "summation")
     if o["tension"] == "yes":
         s.columns += [("curvature", "f_pull[1]"), ("1", "f_pull[2]"), ("1", "f_pull[3] f_pull[4] f_pull[5]")]
-        s.globals += [("F", "f_pull[1] f_pull[2] f_pull[3]"), ("1", "f_pull[4]"), ("L" if flat else "area", "f_pull[5]")]
+        s.globals += [("F", "f_pull[1] f_pull[2] f_pull[3]"), ("1", "f_pull[4]"),
+                      ("L" if flat else "area", "f_pull[5]")]
     s.columns += [("1", "f_couple[1]"), ("F", "f_couple[2] f_couple[3] f_couple[4]")] * grains
     s.globals += [("F", "f_couple[1] f_couple[2] f_couple[3]"), ("1", "f_couple[4]")] * grains
     # implicit friction is left at a residual of 1e-8

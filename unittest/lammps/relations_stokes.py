@@ -16,9 +16,10 @@ OPTIONS = {
     "motion": ["forces", "forces inside", "ab2", "ab2", "euler", "midpoint"],
     "noise": ["no", "no", "yes"], "held": ["no", "no", "still", "moved"], "spin": ["no", "no", "no", "all", "slips"],
     "directions": ["no", "no", "mu"], "drive": ["no", "no", "torque", "pin", "squirm"],
-    "adapt": ["no"] * 5 + ["yes"], "flow": ["rest", "uniform", "shear", "time", "box"], "visc": ["number", "number", "formula"],
-    "select": ["all", "all", "all", "group", "region"], "every": [1, 1, 2, 3], "guess": ["warm", "warm", "cold"],
-    "far": ["auto", "direct", "ewald"], "contacts": ["no", "no", "no", "yes"], "look": ["nothing", "field", "stress"], "skin": [0.3, 0.05],
+    "adapt": ["no"] * 5 + ["yes"], "flow": ["rest", "uniform", "shear", "time", "box"],
+    "visc": ["number", "number", "formula"], "select": ["all", "all", "all", "group", "region"], "every": [1, 1, 2, 3],
+    "guess": ["warm", "warm", "cold"], "far": ["auto", "direct", "ewald"], "contacts": ["no", "no", "no", "yes"],
+    "look": ["nothing", "field", "stress"], "skin": [0.3, 0.05],
     "steps": [2, 4, 7],
 }
 CLOSED = ("periodic", "tilt", "deform")
@@ -39,7 +40,8 @@ def lawful(o, no):
     no(o["rigid"] != "no" and o["model"] == "", model="rotation yes")
     no(o["films"] == "yes" and o["model"] == "", model="rotation yes")
     no(o["pairs"] == "list", films="no", rigid="no", clumps=0, motion=o["motion"] if not overdamped else "forces")
-    no(o["pairs"] == "clumps_only" and overdamped and o["rigid"] == "no" and o["noise"] == "no", rigid="yes" if o["clumps"] else "no")
+    no(o["pairs"] == "clumps_only" and overdamped and o["rigid"] == "no" and o["noise"] == "no",
+       rigid="yes" if o["clumps"] else "no")
     no(o["pairs"] == "clumps_only" and o["motion"] == "midpoint", motion="ab2")
     no(not overdamped, noise="no", held="no", spin="no", adapt="no", directions="no", drive="no")
     no(o["model"] == "", directions="no", drive="no")
@@ -48,11 +50,12 @@ def lawful(o, no):
     no(o["drive"] == "squirm", directions="mu")
     no(overdamped, every=1)
     no(o["look"] != "nothing" and blobs, guess="warm")      # else the forces of points are not kept
-    no(o["noise"] == "yes", adapt="no", contacts="no", held="still" if o["held"] == "moved" and o["clumps"] else o["held"])
+    no(o["noise"] == "yes", adapt="no", contacts="no", held="still" if o["held"] == "moved" and o["clumps"]
+       else o["held"])
     no(o["noise"] == "yes" and o["pairs"] != "inf", noise="no")
     no(o["noise"] == "yes" and o["motion"] in ("ab2", "euler") and (
-        o["films"] == "yes" or blobs or o["space"] == "wall" or o["rigid"] != "no" or o["held"] != "no" or o["spin"] != "no"
-        or o["drive"] == "pin" or o["visc"] == "formula"), motion="midpoint")
+        o["films"] == "yes" or blobs or o["space"] == "wall" or o["rigid"] != "no" or o["held"] != "no" or
+        o["spin"] != "no" or o["drive"] == "pin" or o["visc"] == "formula"), motion="midpoint")
     no(o["held"] == "moved", adapt="no")      # fix move wants one time step
     no(o["held"] == "moved" and o["motion"] == "midpoint" and o["rigid"] != "no", held="still")
     no(o["spin"] != "no" and (o["model"] == "" or o["rigid"] != "no"), spin="no")
@@ -86,7 +89,8 @@ def places(o, seed):
         # LAMMPS makes no atom outside of the box; those of a clump are on one side of its faces
         most = 6.4 if o["space"] in CLOSED[1:] else 8.8
         behind = o["space"] in ("wall",) + SLABS and (p[2] - a < -8.2 or p[2] + a > 8.9)
-        return not behind and all(abs(c) < most for c in p) and all(np.linalg.norm(p - q) > 1.03 * (a + b) for q, b, _ in made)
+        return not behind and all(abs(c) < most for c in p) and all(np.linalg.norm(p - q) > 1.03 * (a + b) for q, b,
+                                                                    _ in made)
 
     def point():
         return np.array([R.uniform(-L, L) for _ in range(3)])
@@ -106,16 +110,19 @@ def places(o, seed):
     for m in range(o["clumps"]):
         draw(lambda: clump(m + 1))
     for _ in range(o["spheres"]):
-        draw(lambda: [(point(), R.choice({"equal": [1.0], "unlike": [1.0, 0.6, 1.2], "shells": [1.0, 0.35, 0.6, 1.7]}[o["radii"]]), 0)])
+        draw(lambda: [(point(), R.choice({"equal": [1.0], "unlike": [1.0, 0.6, 1.2],
+                                          "shells": [1.0, 0.35, 0.6, 1.7]}[o["radii"]]), 0)])
     return made
 
 
 def pair_words(o):
     """The words of the pair style, solved so well that what is left is below all tolerances."""
-    words = {"inf": "cut_off_distance inf", "clumps_only": "clumps_only yes", "taper": "cut_off_distance <L 5.5> taper wendland",
+    words = {"inf": "cut_off_distance inf", "clumps_only": "clumps_only yes",
+             "taper": "cut_off_distance <L 5.5> taper wendland",
              "list": "cut_off_distance <L 3.1>"}[o["pairs"]]
     words += " relative_tolerance 1e-10 max_iter 900 algorithm 2 " + o["model"]
-    words += {"no": "", "yes": " rigid_clumps yes", "auto": " rigid_clumps auto", "shell": " rigid_clumps yes shell 12"}[o["rigid"]]
+    words += {"no": "", "yes": " rigid_clumps yes", "auto": " rigid_clumps auto",
+              "shell": " rigid_clumps yes shell 12"}[o["rigid"]]
     # spheres that overlap by much, each turned as it comes, have no positive matrix with it
     words += " one_body no" * (o["model"].startswith("multiblob") and o["clumps"] > 0 and o["rigid"] == "no")
     words += " lubrication yes" * (o["films"] == "yes") + " warm_start no" * (o["guess"] == "cold")
@@ -123,9 +130,13 @@ def pair_words(o):
     words += {"rest": "", "uniform": " fluid_velocity <V 0.3 0.1 -0.2>", "box": " fluid_velocity box"}.get(
         o["flow"], " fluid_velocity v_ux v_uy v_uz")
     words += {"all": "", "group": " group some", "region": " region zone"}[o["select"]]
-    words += f" far_field {o['far']}" * (o["far"] != "auto") + (" far_field_tolerance 1e-8" if o["space"] in SLABS else " far_field_tolerance 1e-11") * (o["far"] == "ewald")
-    words += " wall <side zlo -8.3>" * (o["space"] in ("wall", "floor")) + " add_force yes" * (o["motion"] == "forces inside")
-    words += " wall <side zlo -8.3> <side zhi 9.0>" * (o["space"] in ("slit", "flux")) + " flow flux" * (o["space"] == "flux")
+    words += (f" far_field {o['far']}" * (o["far"] != "auto") + (" far_field_tolerance 1e-8" if o["space"] in SLABS
+                                                                 else " far_field_tolerance 1e-11") *
+              (o["far"] == "ewald"))
+    words += (" wall <side zlo -8.3>" * (o["space"] in ("wall", "floor")) + " add_force yes" *
+              (o["motion"] == "forces inside"))
+    words += " wall <side zlo -8.3> <side zhi 9.0>" * (o["space"] in ("slit", "flux")) + " flow flux" * (
+        o["space"] == "flux")
     return words + f" update_every {o['every']}" * (o["every"] != 1)
 
 
@@ -141,13 +152,15 @@ def build(options, seed):
     closed = o["space"] in CLOSED
     s.head = ["units lj", "atom_style hybrid sphere bond" + " dipole" * (o["directions"] == "mu")]
     slab = o["space"] in SLABS
-    s.make = [f"boundary <each {'p p f' if slab else dict(open='f f f', wall='f f f', shrink='m m m').get(o['space'], 'p p p')}>"]
+    s.make = ["boundary <each "
+              f"{'p p f' if slab else dict(open='f f f', wall='f f f', shrink='m m m').get(o['space'], 'p p p')}>"]
     half = "-9 9 -9 9 -9 9" if closed else "-9 9 -9 9 -30 30" if slab else "-30 30 -30 30 -30 30"
     tilt = " <L 1.5> <L -1.0> <L 2.0>" if o["space"] in CLOSED[1:] else ""
     s.make.append(f"region box {'prism' if tilt else 'block'} <block {half}>{tilt}")
     s.make += ["create_box 1 box bond/types 1 extra/bond/per/atom 4 extra/special/per/atom 4"]
     s.after = ["mass 1 1"]
-    s.groups = [f"group odd id <ids {' '.join(str(k + 1) for k in range(0, len(s.atoms), 2))}>", "group even subtract all odd"]
+    s.groups = [f"group odd id <ids {' '.join(str(k + 1) for k in range(0, len(s.atoms), 2))}>",
+                "group even subtract all odd"]
     s.define = [f"neighbor <L {o['skin']}> bin"]
     if closed:
         flow, eta = "0.3*sin(2*PI*Z/18) 0 0.1*cos(2*PI*X/18)", "1.3+0.05*sin(2*PI*X/18)"
@@ -155,14 +168,18 @@ def build(options, seed):
         height = "(Z+8.3)" if o["space"] == "floor" else "0.1*(Z+8.3)*(9-Z)"
         flow, eta = f"0.2*{height} 0.05*{height} 0", "1.3+0.05*sin(2*PI*X/18)"
     else:
-        flow, eta = ("0.2*(Z+8.3) 0.05*(Z+8.3) 0" if o["space"] == "wall" else "0.2*Z 0.1*X 0"), "1.3+0.05*sin(0.3*X)*cos(0.2*Y)"
-    s.define += [f"<field u V {flow}>"] * (o["flow"] == "shear") + [f"variable eta atom <one eta {eta}>"] * (o["visc"] == "formula")
+        flow, eta = ("0.2*(Z+8.3) 0.05*(Z+8.3) 0" if o["space"] == "wall"
+                     else "0.2*Z 0.1*X 0"), "1.3+0.05*sin(0.3*X)*cos(0.2*Y)"
+    s.define += [f"<field u V {flow}>"] * (o["flow"] == "shear") + [f"variable eta atom <one eta {eta}>"] * (
+        o["visc"] == "formula")
     if o["flow"] == "time":
         factor = "*cos(40*TIME)"
         s.define.append("<field u V " + " ".join(f"({f}){factor}" if f != "0" else f for f in flow.split()) + ">")
-    s.groups += [f"group some id <ids {' '.join(str(k) for k in range(1, len(s.atoms) + 1) if k % 4 != 3)}>"] * (o["select"] == "group")
+    s.groups += [f"group some id <ids {' '.join(str(k) for k in range(1, len(s.atoms) + 1) if k % 4 != 3)}>"] * (
+        o["select"] == "group")
     s.define += ["region zone block <block -6 5 INF INF INF 6>"] * (o["select"] == "region")
-    s.pair = [("gran/hooke", "<k 50> NULL 0 NULL 0 0", "")] * (o["contacts"] == "yes") + [("stokes_dynamics", pair_words(o), "")]
+    s.pair = ([("gran/hooke", "<k 50> NULL 0 NULL 0 0", "")] * (o["contacts"] == "yes") +
+              [("stokes_dynamics", pair_words(o), "")])
     if o["contacts"] == "yes":
         s.define.append("comm_modify vel yes")
     s.fixes = ["fix pull odd addforce <F 3 1 -4>", "fix push even addforce <F -2 1.5 -2.5>"]
@@ -173,7 +190,8 @@ def build(options, seed):
         without_inertia(s, o, lone, seed)
     if o["look"] == "stress":
         s.fixes.append("compute stress all stokes_dynamics/stress")
-        s.globals += [("stress", " ".join(f"c_stress[{k}]" for k in range(1 + 6 * part, 7 + 6 * part))) for part in range(3)]
+        s.globals += [("stress", " ".join(f"c_stress[{k}]" for k in range(1 + 6 * part, 7 + 6 * part)))
+                      for part in range(3)]
         if o["clumps"] and "forces" in o["motion"]:
             s.globals.pop()      # the virial of fix rigid/small, which depends on where the origin is
     if o["look"] == "field":
@@ -181,12 +199,15 @@ def build(options, seed):
     turning = o["model"] or o["rigid"] == "shell"
     s.columns += [("W", "omegax omegay omegaz")] if turning else []
     s.output_between = "f_report" if "forces" in o["motion"] else "f_move"
-    s.other = "cut_off_distance inf visc <eta 2> relative_tolerance 1e-6 " + " fluid_velocity box" * (o["flow"] == "box")
+    s.other = "cut_off_distance inf visc <eta 2> relative_tolerance 1e-6 " + " fluid_velocity box" * (
+        o["flow"] == "box")
     s.other += " add_force yes" * (o["motion"] == "forces inside")
     s.other += " rigid_clumps yes rotation yes" if o["clumps"] else " rotation yes" if turning else ""
     if o["look"] == "stress" or slab or o["drive"] == "squirm":
-        s.other = s.other.replace("rotation yes", "") + (" multiblob 42" if o["look"] == "stress" else " multiblob 12" if turning else "")
-    s.other += " wall <side zlo -8.3>" * (o["space"] == "floor") + " wall <side zlo -8.3> <side zhi 9.0>" * (o["space"] in ("slit", "flux"))
+        s.other = s.other.replace("rotation yes", "") + (" multiblob 42" if o["look"] == "stress" else " multiblob 12"
+                                                         if turning else "")
+    s.other += " wall <side zlo -8.3>" * (o["space"] == "floor") + " wall <side zlo -8.3> <side zhi 9.0>" * (
+        o["space"] in ("slit", "flux"))
     s.dt, s.steps, s.tolerance = 0.004, o["steps"], 2e-5 if o["noise"] == "yes" or o["films"] == "yes" else 2e-6
     return s
 
@@ -196,7 +217,8 @@ def inertia(s, o):
     if o["clumps"]:
         s.define.append("comm_modify cutoff <L 8>")
         s.groups += ["group lone molecule 0", "group bound subtract all lone"]
-        s.fixes += ["fix bodies bound rigid/small molecule", "fix move lone nve/sphere", "neigh_modify exclude molecule/intra all"]
+        s.fixes += ["fix bodies bound rigid/small molecule", "fix move lone nve/sphere",
+                    "neigh_modify exclude molecule/intra all"]
     else:
         s.fixes.append("fix move all nve/sphere")
     s.columns += [("F", "f_report[1] f_report[2] f_report[3]"), ("V", "f_report[4] f_report[5] f_report[6]"),
@@ -210,7 +232,8 @@ def without_inertia(s, o, lone, seed):
         words += " temperature <E 0.4> 4711 noise_tolerance 1e-7"
     if o["held"] != "no" and lone:
         taken = R.sample(lone, min(2, len(lone)))
-        bound = [k + 1 for k, a in enumerate(s.atoms) if a["molecule"] == 1] if o["rigid"] != "no" and R.random() < 0.5 else []
+        bound = ([k + 1 for k, a in enumerate(s.atoms) if a["molecule"] == 1] if o["rigid"] != "no" and R.random() < 0.5
+                 else [])
         s.groups.append(f"group hold id <ids {' '.join(map(str, taken + bound))}>")
         words += " held hold"
         if o["held"] == "moved":
@@ -236,7 +259,8 @@ def without_inertia(s, o, lone, seed):
     if o["space"] == "deform":
         s.fixes.append("fix shear all deform 1 xz erate <rate 0.4> remap none")
     s.fixes.append(f"fix move all stokes_dynamics/overdamped {words}")
-    s.columns += [("V", "f_move[1] f_move[2] f_move[3]"), ("F", "f_move[4] f_move[5] f_move[6]"), ("Q", "f_move[7] f_move[8] f_move[9]")]
+    s.columns += [("V", "f_move[1] f_move[2] f_move[3]"), ("F", "f_move[4] f_move[5] f_move[6]"),
+                  ("Q", "f_move[7] f_move[8] f_move[9]")]
     s.columns += [("turn", "f_move[11] f_move[12] f_move[13]")] * (o["rigid"] != "no")
     s.columns += [("1", "mux muy muz")] * (o["directions"] == "mu")
     s.globals += [("power", "f_move"), ("V", "f_move[1]"), ("t", "f_move[9]")]

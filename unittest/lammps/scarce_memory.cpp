@@ -1,6 +1,6 @@
 /* For LD_PRELOAD (test_out_of_memory.py): a process in which malloc of MALLOC_LIMIT bytes and more, up to
- * MALLOC_MOST, has nothing to give, calloc likewise, and new of NEW_LIMIT and more, up to NEW_MOST, throws. Limits from the
- * environment, 0: none; they are those of rank SCARCE_RANK alone, if that is given. */
+ * MALLOC_MOST, has nothing to give, calloc likewise, and new of NEW_LIMIT and more, up to NEW_MOST, throws. Limits from
+ * the environment, 0: none; they are those of rank SCARCE_RANK alone, if that is given. */
 #include <cstdlib>
 #include <cstring>
 #include <new>

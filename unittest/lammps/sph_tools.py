@@ -1,4 +1,5 @@
-"""What the SPH tests share: reference tables, an independent evaluation of the equations in numpy, and small scenes in LAMMPS."""
+"""What the SPH tests share: reference tables, an independent evaluation of the equations in numpy, and small scenes in
+LAMMPS."""
 import csv
 import os
 import subprocess
@@ -88,7 +89,8 @@ def evaluate(name, dim, x, v, rho, P, m, h, artvisc=None, tenscorr=None, mu=0.0,
 
 
 def diffusion(name, dim, x, rho, m, h, c, delta):
-    """The rate of density that delta adds, straight from the equations of fix sph/density/continuity. h, c: per particle."""
+    """The rate of density that delta adds, straight from the equations of fix sph/density/continuity. h, c: per
+    particle."""
     d = x[:, None, :] - x[None, :, :]
     r = np.sqrt((d**2).sum(-1))
     hm, cm = (h[:, None] + h[None, :]) / 2, (c[:, None] + c[None, :]) / 2
@@ -108,7 +110,7 @@ def tait(rho):
     return B * ((rho / RHO0) ** GAMMA - 1)
 
 
-# --- scenes in LAMMPS ---------------------------------------------------------------------------------------------------
+# --- scenes in LAMMPS -------------------------------------------------------------------------------------------------
 
 
 def start(args=()):
@@ -120,7 +122,8 @@ def start(args=()):
 
 
 def run(lmp, text):
-    """Commands, one a line. The python module of 2021 cuts messages of errors off after 100 characters, so this asks for them itself."""
+    """Commands, one a line. The python module of 2021 cuts messages of errors off after 100 characters, so this asks
+    for them itself."""
     import ctypes
 
     for line in (part.strip() for part in text.strip().splitlines()):
@@ -136,7 +139,8 @@ def run(lmp, text):
 def by_id(lmp, name, columns=1):
     """A per-atom quantity of the owned atoms, sorted by id (one rank)."""
     n = lmp.extract_global("nlocal")
-    a = np.array(lmp.numpy.extract_atom(name, nelem=n, dim=columns) if columns > 1 else lmp.numpy.extract_atom(name, nelem=n))[:n]
+    a = np.array(lmp.numpy.extract_atom(name, nelem=n, dim=columns) if columns > 1
+                 else lmp.numpy.extract_atom(name, nelem=n))[:n]
     order = np.argsort(np.array(lmp.numpy.extract_atom("id", nelem=n))[:n])
     return a[order].copy()
 
@@ -188,9 +192,11 @@ def mpirun(ranks, script, directory, name="in.test"):
     """Runs an input script with lmp on some ranks."""
     path = os.path.join(str(directory), name)
     with open(path, "w") as f:
-        f.write("plugin load stokesdynplugin.so\n" + "\n".join(line.strip() for line in script.strip().splitlines()) + "\n")
+        f.write("plugin load stokesdynplugin.so\n" + "\n".join(line.strip() for line in script.strip().splitlines()) +
+                "\n")
     command = host.mpirun(ranks) + ["lmp", "-in", path, "-log", "none", "-nocite"]
-    return subprocess.run(command, cwd=str(directory), env=host.environment(), capture_output=True, text=True, timeout=host.PATIENCE)
+    return subprocess.run(command, cwd=str(directory), env=host.environment(), capture_output=True, text=True,
+                          timeout=host.PATIENCE)
 
 
 def read_dump(path):
@@ -199,7 +205,8 @@ def read_dump(path):
         lines = f.read().splitlines()
     begin = max(i for i, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
     names = lines[begin].split()[2:]
-    rows = np.array([[float(w) for w in line.split()] for line in lines[begin + 1:] if line and not line.startswith("ITEM")])
+    rows = np.array([[float(w) for w in line.split()] for line in lines[begin + 1:] if line and
+                     not line.startswith("ITEM")])
     rows = rows[np.argsort(rows[:, names.index("id")])]
     return {name: rows[:, k] for k, name in enumerate(names)}
 

@@ -14,9 +14,11 @@ def specific_energy(rho):
     return B / RHO0 * ((s ** (GAMMA - 1) - 1) / (GAMMA - 1) + 1 / s - 1)
 
 
-def wave(path, integrator, courant, steps, samples, amplitude=1e-3, kernel="wendland", h=1.3 * DX, thermal=0.0, extra=""):
+def wave(path, integrator, courant, steps, samples, amplitude=1e-3, kernel="wendland", h=1.3 * DX, thermal=0.0,
+         extra=""):
     """Times in periods of the wave, total energies and kinetic energies."""
-    x = np.stack([a.ravel() for a in np.meshgrid((np.arange(NX) + 0.5) * DX, (np.arange(NY) + 0.5) * DX, [0.0], indexing="ij")], axis=1)
+    x = np.stack([a.ravel() for a in np.meshgrid((np.arange(NX) + 0.5) * DX, (np.arange(NY) + 0.5) * DX, [0.0],
+                                                 indexing="ij")], axis=1)
     L = NX * DX
     v = np.zeros_like(x)
     v[:, 0] = amplitude * C0 * np.sin(2 * np.pi * x[:, 0] / L)

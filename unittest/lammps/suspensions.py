@@ -10,8 +10,8 @@ ALONG = (0.0, 0.0, 0.4)
 
 
 def flocs(count, m, side, seed=1, spread=1.0):
-    """Each sphere stuck to one before it at 0.6 to 0.95 of the sum of their radii; flocs at random places of a cube, none
-    overlapping another. As cloud_flocs of the core's tests."""
+    """Each sphere stuck to one before it at 0.6 to 0.95 of the sum of their radii; flocs at random places of a cube,
+    none overlapping another. As cloud_flocs of the core's tests."""
     rng = np.random.default_rng(seed)
     x, a, molecule = np.zeros((0, 3)), np.zeros(0), []
     while len(molecule) < count * m:

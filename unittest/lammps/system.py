@@ -1,7 +1,7 @@
 """LAMMPS systems from arrays of spheres: in this process through the python module, or by mpirun with a script.
 
-A Simulation is a LAMMPS instance with the spheres and pair_style stokes_dynamics in it. The same input lines drive lmp under
-mpirun, where the answer comes back as a dump sorted by atom ID."""
+A Simulation is a LAMMPS instance with the spheres and pair_style stokes_dynamics in it. The same input lines drive lmp
+under mpirun, where the answer comes back as a dump sorted by atom ID."""
 import ctypes
 import os
 import re
@@ -14,8 +14,8 @@ from host import PATIENCE, environment, mpirun
 DENSITY = 1.7
 PLUGIN = "stokesdynplugin.so"
 
-# What the runs of a test said, for the table of hard cases (conftest.py): (kind, value), kind one of iterations, residual, error
-# (of the forces) and says.
+# What the runs of a test said, for the table of hard cases (conftest.py): (kind, value), kind one of iterations,
+# residual, error (of the forces) and says.
 notes = []
 
 
@@ -25,7 +25,8 @@ def note(kind, value):
 
 
 class Spheres:
-    """n spheres: x [n,3], radius a, velocity v and molecule ID (each one value or one a sphere), bonds as pairs of atom IDs."""
+    """n spheres: x [n,3], radius a, velocity v and molecule ID (each one value or one a sphere), bonds as pairs of atom
+    IDs."""
 
     def __init__(self, x, a=1.0, v=(0.0, 0.0, 0.0), molecule=0, bonds=()):
         self.x = np.atleast_2d(np.asarray(x, float))
@@ -73,8 +74,8 @@ def chain(n, spacing=2.0, axis=2, a=1.0, v=(0.0, 0.0, 0.0), molecule=1):
     return Spheres(x, a, v, molecule)
 
 
-def input_lines(spheres, style, data, boundary="f f f", box=None, tilt=None, newton="on", comm="", before_pair="", fix=True,
-                density=DENSITY, units="lj", dt=None):
+def input_lines(spheres, style, data, boundary="f f f", box=None, tilt=None, newton="on", comm="", before_pair="",
+                fix=True, density=DENSITY, units="lj", dt=None):
     """Everything up to the run command. style: the words after pair_style stokes_dynamics, or a list of whole lines.
     A periodic boundary needs box: three (lo, hi)."""
     spheres.write_data(data, box, tilt, density)
@@ -226,11 +227,11 @@ def lmp(folder, lines, ranks=1, timeout=PATIENCE, succeed=True):
         out.write("\n".join(lines.splitlines() if isinstance(lines, str) else lines) + "\n")
     words = ["lmp", "-in", script, "-log", log, "-nocite"]
     if ranks > 1:
-        # The ranks leave one after the other, and mpirun kills the rest when the first has failed: rank 0 perhaps before its
-        # log is on disk. So the shell in between always succeeds and tells the exit code.
+        # The ranks leave one after the other, and mpirun kills the rest when the first has failed: rank 0 perhaps
+        # before its log is on disk. So the shell in between always succeeds and tells the exit code.
         words = mpirun(ranks) + ["sh", "-c", '"$@" || echo "exit code $?"', "sh"] + words
-    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=str(folder), env=environment(),
-                               start_new_session=True)
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=str(folder),
+                               env=environment(), start_new_session=True)
     try:
         text = process.communicate(timeout=timeout)[0].decode(errors="replace")
     except subprocess.TimeoutExpired:
@@ -249,8 +250,8 @@ def lmp(folder, lines, ranks=1, timeout=PATIENCE, succeed=True):
 
 
 def lmp_in_turn(folder, inputs, ranks=1):
-    """Several inputs (lists of lines) in one start of lmp, each after a `clear`: the log of each. mpirun takes as long to start as most
-    scenes to run."""
+    """Several inputs (lists of lines) in one start of lmp, each after a `clear`: the log of each. mpirun takes as long
+    to start as most scenes to run."""
     lines = []
     for k, one in enumerate(inputs):
         lines += ["clear"] * (k > 0) + [f'print "input {k} of several"'] + list(one)

@@ -1,5 +1,6 @@
-"""Pairs of spheres of unlike radii through LAMMPS, as unittest/data/multiblob/unlike_pairs.csv has them: their motions under eleven loads,
-turned as they may be, and how far these are off; and groups of three and four, as unlike_groups.csv has them."""
+"""Pairs of spheres of unlike radii through LAMMPS, as unittest/data/multiblob/unlike_pairs.csv has them: their motions
+under eleven loads, turned as they may be, and how far these are off; and groups of three and four, as unlike_groups.csv
+has them."""
 import csv
 import os
 
@@ -8,9 +9,10 @@ import numpy as np
 import model
 from system import Spheres, read_dump
 
-LOADS = ["F_l along", "F_l across", "F_s along", "F_s across", "T_l along", "T_l across", "T_s along", "T_s across", "E along", "E shear",
-         "E across"]
-STRAINS = {"E along": np.diag([1.0, 1.0, -2.0]) / 6 ** 0.5, "E shear": np.array([(0, 0, 1), (0, 0, 0), (1, 0, 0)]) / 2 ** 0.5,
+LOADS = ["F_l along", "F_l across", "F_s along", "F_s across", "T_l along", "T_l across", "T_s along", "T_s across",
+         "E along", "E shear", "E across"]
+STRAINS = {"E along": np.diag([1.0, 1.0, -2.0]) / 6 ** 0.5, "E shear": np.array([(0, 0, 1), (0, 0, 0), (1, 0, 0)]) /
+           2 ** 0.5,
            "E across": np.diag([1.0, -1.0, 0.0]) / 2 ** 0.5}
 
 
@@ -49,7 +51,8 @@ def loads():
     """[11][2 spheres][6] F and T in the frame of the pair; none in the strains"""
     out = np.zeros((len(LOADS), 2, 6))
     for k, load in enumerate(LOADS[:8]):
-        out[k, int(load[2] == "s"), {"F along": 2, "F across": 0, "T along": 5, "T across": 4}[load[0] + load[3:]]] = 1.0
+        out[k, int(load[2] == "s"), {"F along": 2, "F across": 0, "T along": 5,
+                                     "T across": 4}[load[0] + load[3:]]] = 1.0
     return out
 
 
@@ -64,8 +67,8 @@ def push(sim, rows):
 
 
 def motions(simulation, folder, ratio, xi, style, ways):
-    """[ways][11][2][6] U and W in the frame of the pair, those of the strains less the flow at the centres. One run for each way, one load
-    a step."""
+    """[ways][11][2][6] U and W in the frame of the pair, those of the strains less the flow at the centres. One run for
+    each way, one load a step."""
     a = np.array((1.0, 1.0 / ratio))
     z = np.array([(0, 0, a.sum() * (1 + xi / 2)), (0, 0, 0.0)])
     path = os.path.join(str(folder), "motions")
@@ -79,11 +82,13 @@ def motions(simulation, folder, ratio, xi, style, ways):
                 E = Q @ STRAINS[load] @ Q.T
                 terms.append(f"(step=={8 + k})*(" + "+".join(f"({E[c, d]:.17g})*{'xyz'[d]}" for d in range(3)) + ")")
             flow.append(f"variable u{c} atom " + "+".join(terms).replace("step", "v_now"))
-        sim = simulation(Spheres(x, a), f"cut_off_distance inf visc 1 {style} fluid_velocity v_u0 v_u1 v_u2 relative_tolerance 1e-7", fix=False,
+        sim = simulation(Spheres(x, a), f"cut_off_distance inf visc 1 {style} fluid_velocity v_u0 v_u1 v_u2 "
+                                        "relative_tolerance 1e-7", fix=False,
                          dt=1e-12, before_pair="\n".join(["variable now equal step"] + flow), box=[(-9.0, 9.0)] * 3)
         turned = np.concatenate([wanted[..., :3] @ Q.T, wanted[..., 3:] @ Q.T], axis=-1)
         push(sim, lambda step, turned=turned: turned[min(step, 10)])
-        sim.commands(["fix move all stokes_dynamics/overdamped", f"dump all all custom 1 {path} id vx vy vz omegax omegay omegaz",
+        sim.commands(["fix move all stokes_dynamics/overdamped",
+                      f"dump all all custom 1 {path} id vx vy vz omegax omegay omegaz",
                       "dump_modify all sort id format float %.17g"]).run(10)
         sim.command("undump all")
         V = np.array([frame for _, frame in read_dump(path)])
@@ -95,18 +100,22 @@ def motions(simulation, folder, ratio, xi, style, ways):
 
 
 def errors(V, V0, ratio):
-    """[ways][11][2 spheres] over the sphere's own scale: hypot(U, a W) of what it is off, over the largest exact answer of that sphere over
-    the directions of that kind of load (that of a strain at least E a/2)"""
+    """[ways][11][2 spheres] over the sphere's own scale: hypot(U, a W) of what it is off, over the largest exact answer
+    of that sphere over the directions of that kind of load (that of a strain at least E a/2)"""
     a = np.array((1.0, 1.0 / ratio))
-    size = lambda v: np.hypot(np.linalg.norm(v[..., :3], axis=-1), a * np.linalg.norm(v[..., 3:], axis=-1))    # noqa: E731
+
+    def size(v):
+        return np.hypot(np.linalg.norm(v[..., :3], axis=-1), a * np.linalg.norm(v[..., 3:], axis=-1))
+
     own = size(V0)
     kinds = [load.split()[0] for load in LOADS]
-    scale = np.array([[max(own[j, q] for j, kind in enumerate(kinds) if kind == kinds[k]) for q in range(2)] for k in range(len(LOADS))])
+    scale = np.array([[max(own[j, q] for j, kind in enumerate(kinds) if kind == kinds[k]) for q in range(2)]
+                      for k in range(len(LOADS))])
     scale[8:] = np.maximum(scale[8:], a / 2)
     return size(V - V0) / scale
 
 
-# --- groups -----------------------------------------------------------------------------------------------------------------
+# --- groups -----------------------------------------------------------------------------------------------------------
 
 def groups():
     """{case: (x, a, {load: (F, T, U, W)})}"""
@@ -142,7 +151,8 @@ def group_motions(simulation, case, style):
     for load, rows in loads.items():
         E = strain_of(load)
         flow = [f"variable u{c} atom " + "+".join(f"({E[c, d]:.17g})*{'xyz'[d]}" for d in range(3)) for c in range(3)]
-        sim = simulation(Spheres(x, a), f"cut_off_distance inf visc 1 {style} fluid_velocity v_u0 v_u1 v_u2 relative_tolerance 1e-7", fix=False,
+        sim = simulation(Spheres(x, a), f"cut_off_distance inf visc 1 {style} fluid_velocity v_u0 v_u1 v_u2 "
+                                        "relative_tolerance 1e-7", fix=False,
                          dt=1e-12, before_pair="\n".join(flow))
         push(sim, rows[:, :6])
         sim.commands("fix move all stokes_dynamics/overdamped").run()
@@ -151,13 +161,15 @@ def group_motions(simulation, case, style):
 
 
 def group_errors(found, case):
-    """{kind of load: [n]} per cent of the sphere's largest own motion under that kind of load; strain: at least E a/2"""
+    """{kind of load: [n]} per cent of the sphere's largest own motion under that kind of load; strain: at least E
+    a/2"""
     x, a, loads = GROUPS[case]
     scale = np.repeat(np.stack([np.ones_like(a), a], axis=1), 3, axis=1)
     out = {}
     for kind in ("strain", "forces", "torques", "weight"):
         names = [load for load in loads if load.startswith(kind)]
         own = np.array([np.linalg.norm(scale * loads[load][:, 6:], axis=1) for load in names]).max(axis=0)
-        off = np.array([np.linalg.norm(scale * (found[load] - loads[load][:, 6:]), axis=1) for load in names]).max(axis=0)
+        off = np.array([np.linalg.norm(scale * (found[load] - loads[load][:, 6:]), axis=1) for load in names]).max(
+            axis=0)
         out[kind] = 100 * off / np.maximum(own, 0.5 * a if kind == "strain" else 0)
     return out

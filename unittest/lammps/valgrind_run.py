@@ -1,7 +1,7 @@
 """A small LAMMPS run under valgrind memcheck: no error may have our code in its stack.   valgrind_run.py FOLDER
 
-LAMMPS and Open MPI have errors of their own, so each is looked at: it is ours if a frame of its stack is in one of our files or
-carries one of our names. Writes FOLDER/valgrind.xml."""
+LAMMPS and Open MPI have errors of their own, so each is looked at: it is ours if a frame of its stack is in one of our
+files or carries one of our names. Writes FOLDER/valgrind.xml."""
 import os
 import subprocess
 import sys
@@ -40,12 +40,13 @@ def script(folder):
     def scene(name, style, of=spheres, **options):
         return input_lines(of, style, os.path.join(folder, name + ".data"), **options)
 
-    lines = scene("clump", f"clumps_only yes {COMMON} add_force yes", boundary="p p p", box=box, comm="comm_modify cutoff 4",
+    lines = scene("clump", f"clumps_only yes {COMMON} add_force yes", boundary="p p p", box=box,
+                  comm="comm_modify cutoff 4",
                   before_pair="neigh_modify exclude molecule/intra all every 1 delay 0 check no")
     lines += ["compute p all pair stokes_dynamics", "thermo_style custom step c_p[1] c_p[2]", "variable w atom z<0",
               "group half variable w",
-              "fix move all rigid/small molecule", "timestep 0.01", "run 3", f"write_restart {folder}/mid.restart", "run 2",
-              "clear"]
+              "fix move all rigid/small molecule", "timestep 0.01", "run 3", f"write_restart {folder}/mid.restart",
+              "run 2", "clear"]
     lines += ["plugin load stokesdynplugin.so", f"read_restart {folder}/mid.restart", "thermo_style custom step",
               "fix move all rigid/small molecule", "run 2", "clear"]
     # every sphere with those in reach, half of them ghosts; spheres come and go
@@ -56,15 +57,19 @@ def script(folder):
         "delete_atoms group gone", "run 2",
         "clear"]
     # Ewald sums: torques in an oblique box that shrinks, waves as preconditioner; an open box; two levels
-    lines += scene("periodic", f"cut_off_distance inf {COMMON} rotation yes precondition waves far_field_tolerance 1e-3",
+    lines += scene("periodic",
+                   f"cut_off_distance inf {COMMON} rotation yes precondition waves far_field_tolerance 1e-3",
                    boundary="p p p", box=box, tilt=(1.0, 0.5, -0.5))
     lines += MOVE + ["fix squeeze all deform 1 x scale 0.9 remap x", "run 2", "clear"]
-    lines += scene("open", f"cut_off_distance inf {COMMON} far_field ewald far_field_tolerance 1e-3") + MOVE + ["run 2", "clear"]
+    lines += scene("open", f"cut_off_distance inf {COMMON} far_field ewald far_field_tolerance 1e-3") + MOVE + [
+        "run 2", "clear"]
     loose = "cut_off_distance inf visc 1.3 algorithm 2 relative_tolerance 0.5"
     lines += scene("levels", f"{loose} far_field_tolerance 1e-2", wide(), boundary="p p p", box=[(-11.0, 11.0)] * 3)
     lines += MOVE + ["run 1", "clear"]
-    lines += scene("all", f"cut_off_distance inf {COMMON}", before_pair="variable s atom 1+0.1*x\nvariable u equal 0.1*step")
-    lines += ["pair_style stokes_dynamics cut_off_distance inf visc v_s fluid_velocity v_u 0 0 update_every 2 algorithm 2",
+    lines += scene("all", f"cut_off_distance inf {COMMON}",
+                   before_pair="variable s atom 1+0.1*x\nvariable u equal 0.1*step")
+    lines += ["pair_style stokes_dynamics cut_off_distance inf visc v_s fluid_velocity v_u 0 0 "
+              "update_every 2 algorithm 2",
               "pair_coeff * *"]
     return lines + MOVE + ["run 3"]
 
@@ -73,7 +78,8 @@ def is_ours(error):
     for stack in error.findall("stack"):
         for frame in stack.findall("frame"):
             library, function = frame.findtext("obj") or "", frame.findtext("fn") or ""
-            if library.endswith(("stokesdynplugin.so", "stokesdynstyles.so")) or "StokesDyn::" in function or function.startswith("sd_"):
+            if library.endswith(("stokesdynplugin.so",
+                                 "stokesdynstyles.so")) or "StokesDyn::" in function or function.startswith("sd_"):
                 return True
     return False
 
@@ -106,7 +112,8 @@ def main(folder):
     ours = [e for e in errors if is_ours(e)]
     for e in ours:
         print(describe(e))
-    print(f"valgrind: {len(ours)} errors of ours ({len(errors)} in all, the others of LAMMPS and MPI); whole report: {report}")
+    print(f"valgrind: {len(ours)} errors of ours ({len(errors)} in all, the others of LAMMPS and MPI); "
+          f"whole report: {report}")
     return 1 if ours else 0
 
 

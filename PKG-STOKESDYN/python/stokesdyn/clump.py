@@ -1,4 +1,5 @@
-"""Hydrodynamic resistance of a rigid clump of spheres, from libstokesdyn.so: the core of PKG-STOKESDYN without LAMMPS."""
+"""Hydrodynamic resistance of a rigid clump of spheres, from libstokesdyn.so: the core of PKG-STOKESDYN without
+LAMMPS."""
 import ctypes
 import numbers
 import os
@@ -15,9 +16,9 @@ class Error(ValueError):
 
 class _Result(ctypes.Structure):
     """As in stokesdyn.c."""
-    _fields_ = [("resistance", ctypes.c_double * 36), ("mobility", ctypes.c_double * 36), ("centre", ctypes.c_double * 3),
-                ("radius", ctypes.c_double), ("dense", ctypes.c_double), ("iterative", ctypes.c_double),
-                ("points", ctypes.c_int), ("iterations", ctypes.c_int)]
+    _fields_ = [("resistance", ctypes.c_double * 36), ("mobility", ctypes.c_double * 36),
+                ("centre", ctypes.c_double * 3), ("radius", ctypes.c_double), ("dense", ctypes.c_double),
+                ("iterative", ctypes.c_double), ("points", ctypes.c_int), ("iterations", ctypes.c_int)]
 
 
 def _library():
@@ -89,14 +90,16 @@ class Clump:
         n = len(self.x)
         if n == 0:
             raise Error("x must have at least one sphere")
-        self.radius = np.full(n, _numbers("radius", radius, ())) if np.ndim(radius) == 0 else _numbers("radius", radius, (n,))
+        self.radius = np.full(n, _numbers("radius", radius, ())) if np.ndim(radius) == 0 else _numbers(
+            "radius", radius, (n,))
         if (self.radius <= 0.0).any():
             raise Error(f"radius must be > 0: there is {self.radius.min()}")
         _within("radius", self.radius, 1e-60, 1e60)
         _within("x", self.x, 0, 1e60)
         self.viscosity = _positive("viscosity", viscosity)
         _within("viscosity", self.viscosity, 1e-100, 1e100)
-        if not isinstance(shell, numbers.Integral) or isinstance(shell, bool) or not (shell == 1 or 12 <= shell <= 100000):
+        if not isinstance(shell, numbers.Integral) or isinstance(shell,
+                                                                 bool) or not (shell == 1 or 12 <= shell <= 100000):
             raise Error(f"shell must be 1 or a whole number from 12 on, not {shell!r}")
         if not isinstance(rotation, (bool, np.bool_)):
             raise Error(f"rotation must be True or False, not {rotation!r}")
@@ -105,8 +108,10 @@ class Clump:
                                        ctypes.byref(result))
         if status == _NO_MEMORY:
             if result.iterative == 0.0:
-                raise Error("out of memory: linear algebra (BLAS) needs 0.14 GB of address space at once; is there a limit (ulimit -v)?")
-            raise Error(f"memory {memory:g}: the solve needs {result.iterative:.3g} bytes, {result.dense:.3g} for a dense one")
+                raise Error("out of memory: linear algebra (BLAS) needs 0.14 GB of address space at once; "
+                            "is there a limit (ulimit -v)?")
+            raise Error(f"memory {memory:g}: the solve needs {result.iterative:.3g} bytes, "
+                        f"{result.dense:.3g} for a dense one")
         if status == _SINGULAR:
             raise Error("x: two spheres of equal radius lie at one point, or too nearly so")
         if status:
@@ -125,7 +130,8 @@ class Clump:
 
 
 def read(path):
-    """Centres [n, 3] and radii [n] of a LAMMPS molecule file (sections Coords and Diameters), or of lines "x y z radius"."""
+    """Centres [n, 3] and radii [n] of a LAMMPS molecule file (sections Coords and Diameters), or of lines "x y z
+    radius"."""
     try:
         lines = [line.split("#")[0].replace(",", " ").split() for line in pathlib.Path(path).read_text().splitlines()]
     except OSError as why:
@@ -139,7 +145,8 @@ def read(path):
                 rows[section][int(line[0])] = [float(word) for word in line[1:]]
         coords, diameters = rows["Coords"], rows["Diameters"]
         if coords and coords.keys() == diameters.keys():
-            return (np.array([coords[k] for k in sorted(coords)]), 0.5 * np.array([diameters[k][0] for k in sorted(coords)]))
+            return (np.array([coords[k] for k in sorted(coords)]),
+                    0.5 * np.array([diameters[k][0] for k in sorted(coords)]))
         if coords or diameters:
             raise Error(f"path {path}: Coords and Diameters of all atoms are needed")
         table = np.array([[float(word) for word in line] for line in lines if line])

@@ -12,7 +12,8 @@ static double square(const double d[3])
   return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
 }
 
-/* Against all images up to four cells away, in boxes tilted by up to the whole of their edges, open in some directions */
+/* Against all images up to four cells away, in boxes tilted by up to the whole of their edges, open in some
+   directions */
 static void image_is_the_closest(void **state)
 {
   (void) state;
@@ -38,7 +39,8 @@ static void image_is_the_closest(void **state)
   }
 }
 
-/* 2^60 boxes away every digit that tells where is still there; beyond, whatever comes out is in the box, and comes at once. */
+/* 2^60 boxes away every digit that tells where is still there; beyond, whatever comes out is in the box, and comes at
+   once. */
 static void far_away_is_no_loop(void **state)
 {
   (void) state;

@@ -426,7 +426,8 @@ static void two_fluids_with_correction(void **state)
             d[c] = s.x[3 * i + c] - s.x[3 * j + c];
             r2 += d[c] * d[c];
           }
-          const double g = sd_sph_dW_over_r(SD_SPH_WENDLAND, dimension, sqrt(r2), s.types[classes > 1 ? 2 * s.cls[i] + s.cls[j] : 0].h);
+          const double g = sd_sph_dW_over_r(SD_SPH_WENDLAND, dimension, sqrt(r2),
+                                            s.types[classes > 1 ? 2 * s.cls[i] + s.cls[j] : 0].h);
           const double weight = -V * mass(&s, j) / s.rho[j] * 2.0 * s.rho[i] / (s.rho[i] + s.rho[j]) *
               (s.P[j] - s.P[i]) * g;
           for (int a = 0; a < 3; a++)

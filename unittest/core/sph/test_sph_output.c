@@ -181,7 +181,8 @@ static void particles_hold_a_body_as_a_weak_solid(void **state)
 {
   (void) state;
   const double pi = acos(-1.0), P = 4900.0, dx = 0.02, R = 0.3, V = 4.0 / 3.0 * pi * R * R * R;
-  const sd_sph_model flat = {.kernel = SD_SPH_WENDLAND, .dimension = 2}, deep = {.kernel = SD_SPH_WENDLAND, .dimension = 3},
+  const sd_sph_model flat = {.kernel = SD_SPH_WENDLAND, .dimension = 2}, deep = {.kernel = SD_SPH_WENDLAND,
+                                                                                 .dimension = 3},
                      spline = {.kernel = SD_SPH_CUBICSPLINE, .dimension = 2};
   CHECK_NEAR(sd_sph_arrangement(&flat, 2.0 * dx, dx, P, 0.7), 2.0 * pi * 0.01 * P, 1e-9);
   CHECK_NEAR(sd_sph_arrangement(&flat, 2.5 * dx, dx, P, 0.7), 2.0 * pi * 0.005 * P, 0.03 * 154.0);

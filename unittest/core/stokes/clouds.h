@@ -20,8 +20,8 @@ static inline void random_vector(uint64_t *seed, double length, double v[3])
   for (int d = 0; d < 3; d++) v[d] *= length / sqrt(sq);
 }
 
-/* Spheres of radii smallest ... largest (uniform) at volume fraction phi in a cube, pushed apart until no two overlap by more
- * than a millionth: random sequential addition would end at 0.38. */
+/* Spheres of radii smallest ... largest (uniform) at volume fraction phi in a cube, pushed apart until no two overlap
+ * by more than a millionth: random sequential addition would end at 0.38. */
 static inline scene cloud_dense(int n, double phi, double smallest, double largest, double eta,
                                 uint64_t seed)
 {
@@ -64,8 +64,8 @@ static inline scene cloud_dense(int n, double phi, double smallest, double large
   return s;
 }
 
-/* Flocs of m spheres, radii 1 ... spread (uniform in the logarithm), each sphere stuck to one before it at 0.6 to 0.95 of the
- * sum of their radii; flocs at random places of a cube. apart: spheres of different flocs do not overlap.
+/* Flocs of m spheres, radii 1 ... spread (uniform in the logarithm), each sphere stuck to one before it at 0.6 to 0.95
+ * of the sum of their radii; flocs at random places of a cube. apart: spheres of different flocs do not overlap.
  * Spheres m k ... m (k+1) - 1 are floc k. */
 static inline scene cloud_flocs(int flocs, int m, double spread, double side, int apart, double eta,
                                 uint64_t seed)
@@ -142,8 +142,8 @@ static inline int cloud_apart(const cloud_cells *c, const double *all, const dou
   return 1;
 }
 
-/* m^3 equal spheres in a periodic cube, phi up to 0.5: from a simple cubic lattice by random moves of one after the other that keep
- * them apart. */
+/* m^3 equal spheres in a periodic cube, phi up to 0.5: from a simple cubic lattice by random moves of one after the
+ * other that keep them apart. */
 static inline scene cloud_periodic(int m, double phi, double a, double eta, int sweeps, double *side)
 {
   const double spacing = a * cbrt(4.0 / 3.0 * SD_PI / phi), step = 0.3 * (1.0 - phi) * a;

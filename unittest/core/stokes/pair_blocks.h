@@ -21,8 +21,8 @@ static inline void put_cross(double s, const double d[3], double *block)
   block[8] = -(block[13] = s * d[0]);
 }
 
-/* The 6x6 blocks of two spheres, row-major: rows F T, columns U W, d [3] a unit vector from 1 to 2. Block 21 is the transpose
- * of 12. */
+/* The 6x6 blocks of two spheres, row-major: rows F T, columns U W, d [3] a unit vector from 1 to 2. Block 21 is the
+ * transpose of 12. */
 static inline void pair_blocks(const sd_pair_resistance *R, const double d[3], double B11[36], double B12[36],
                                double B22[36])
 {

@@ -27,7 +27,8 @@ static void mixing_lengths(void **state)
   LENGTH(SD_VANS_PIPE);
   for (int j = 0; j < N; j++)
     assert_true(fabs(c->length[j] - 0.4 * fmin(j * dz, H - j * dz)) < 1e-14);
-  /* a bed of 20 slices above phi_max: no length in it, kappa (z - bed) above; Yade's loses a little in the highest of them */
+  /* a bed of 20 slices above phi_max: no length in it, kappa (z - bed) above; Yade's loses a little in the highest of
+     them */
   for (int n = 0; n < 20; n++) c->phi[n] = 0.62;
   LENGTH(SD_VANS_LI_SAWAMOTO);
   for (int j = 0; j < N; j++) assert_true(fabs(c->length[j] - 0.4 * fmax(j - 20, 0) * dz) < 1e-14);
@@ -52,15 +53,17 @@ static void mixing_lengths(void **state)
   column_free(c);
 }
 
-/* With bed_mixing C no length is below C diameters at a node with grains on either side, of their mean diameter where there are two sizes; elsewhere, and on the
- * bottom, the law stands. Between narrow walls the width has the last word. */
+/* With bed_mixing C no length is below C diameters at a node with grains on either side, of their mean diameter where
+ * there are two sizes; elsewhere, and on the bottom, the law stands. Between narrow walls the width has the last
+ * word. */
 static void lengths_among_grains(void **state)
 {
   (void) state;
   enum { N = 51 };
   column *c = column_create(N, 0.5, 0.0);
   const double a[2] = {0.003, 0.006};
-  sd_vans_fluid fluid = {.rho = 1000, .eta = 1e-3, .kappa = 0.4, .phi_max = 0.6, .radius = 0.003, .turbulence = SD_VANS_LI_SAWAMOTO};
+  sd_vans_fluid fluid = {.rho = 1000, .eta = 1e-3, .kappa = 0.4, .phi_max = 0.6, .radius = 0.003,
+                         .turbulence = SD_VANS_LI_SAWAMOTO};
   double plain[N], classes[2 * SD_VANS_ROWS * N] = {0};
   for (int n = 0; n < 20; n++) c->phi[n] = n < 15 ? 0.61 : 0.59;
   sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, plain, c->scratch);
@@ -70,7 +73,8 @@ static void lengths_among_grains(void **state)
     assert_true(fabs(c->length[j] - (j > 0 && j <= 20 ? fmax(plain[j], 0.7 * 0.006) : plain[j])) < 1e-17);
   assert_true(plain[10] == 0.0 && c->length[10] > 0.0 && plain[20] < 0.7 * 0.006);
   /* as many grains of either size: 6 sum V/sum S. Yade weights both sums with phi. */
-  for (int n = 0; n < 15; n++) classes[n] = 0.61 * 27 / (27 + 216.0), classes[SD_VANS_ROWS * N + n] = 0.61 * 216 / (27 + 216.0);
+  for (int n = 0; n < 15; n++) classes[n] = 0.61 * 27 / (27 + 216.0), classes[SD_VANS_ROWS * N + n] = 0.61 * 216 /
+      (27 + 216.0);
   fluid.nclass = 2;
   fluid.class_radius = a;
   sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, classes, c->phi, c->length, c->scratch);

@@ -108,8 +108,8 @@ static void richardson_and_zaki_find_their_exponent(void **state)
   assert_true(first > 4.6 && first <= 4.65 && last == 2.39);
 }
 
-/* Lambert's function gives the lone speed that halving finds in y = (1 - n(Re_0)) ln e, Re_0 = Re e^y: to rounding, in dilute and dense beds, from
- * the slow end of n to the fast one and on both sides of its corners. */
+/* Lambert's function gives the lone speed that halving finds in y = (1 - n(Re_0)) ln e, Re_0 = Re e^y: to rounding, in
+ * dilute and dense beds, from the slow end of n to the fast one and on both sides of its corners. */
 static void lone_speeds_solve_richardson_and_zakis_equation(void **state)
 {
   (void) state;
@@ -134,11 +134,13 @@ static void lone_speeds_solve_richardson_and_zakis_equation(void **state)
   assert_true(worst < 1e-13); /* the rounding of y, up to 18, is one of e^y: 4e-15, and twice that in N */
 }
 
-/* A pressure gradient pushes a grain by its volume times that, its share of it if it is a member of a clump; the water does not take that back. */
+/* A pressure gradient pushes a grain by its volume times that, its share of it if it is a member of a clump; the water
+   does not take that back. */
 static void a_pressure_gradient_pushes_grains(void **state)
 {
   (void) state;
-  const double edge[3] = {0, 1, 2}, U[3] = {0, 0.3, 0.3}, hindrance[2] = {1, 1}, a = 0.1, x[3] = {0, 0, 0.5}, v[3] = {0.1, 0, 0}, weight = 0.7;
+  const double edge[3] = {0, 1, 2}, U[3] = {0, 0.3, 0.3}, hindrance[2] = {1, 1}, a = 0.1, x[3] = {0, 0, 0.5},
+               v[3] = {0.1, 0, 0}, weight = 0.7;
   const sd_vans_mesh mesh = {2, 0, 1, edge};
   sd_vans_force_law law = {.rho = RHO, .eta = ETA, .g = {0.2, 0, -G}, .rest = 1};
   const sd_vans_grains grains = {.n = 1, .x = x, .v = v, .a = &a, .weight = &weight};

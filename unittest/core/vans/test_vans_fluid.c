@@ -16,8 +16,8 @@ static double parabola(double z)
   return -BETWEEN_PLATES.dpdx / (2 * BETWEEN_PLATES.eta) * z * (H - z);
 }
 
-/* Steady discrete solution on equal slices: u = -dpdx/(2 eta) (z (H-z) + dz^2/4) in the middles; against it 1e-10, against
- * the parabola second order. */
+/* Steady discrete solution on equal slices: u = -dpdx/(2 eta) (z (H-z) + dz^2/4) in the middles; against it 1e-10,
+ * against the parabola second order. */
 static void poiseuille(void **state)
 {
   (void) state;
@@ -39,7 +39,8 @@ static void poiseuille(void **state)
   }
 }
 
-/* The same flow between slices that grow: 2.5 times as high at the top as at the bottom, second order to the parabola still. */
+/* The same flow between slices that grow: 2.5 times as high at the top as at the bottom, second order to the parabola
+   still. */
 static void poiseuille_on_an_uneven_mesh(void **state)
 {
   (void) state;
@@ -58,7 +59,8 @@ static void poiseuille_on_an_uneven_mesh(void **state)
   }
 }
 
-/* du/dz of the layer: (nu + nut) u' = u_star^2 (1 - z/H), nut = (kappa z)^2 u' above the sublayer z u_star/nu = 11.3. */
+/* du/dz of the layer: (nu + nut) u' = u_star^2 (1 - z/H), nut = (kappa z)^2 u' above the sublayer z u_star/nu =
+   11.3. */
 static double layer_gradient(double z, double nu, double u_star, double H, double kappa)
 {
   const double stress = u_star * u_star * (1.0 - z / H);
@@ -167,7 +169,8 @@ static void momentum_is_balanced(void **state)
     }
 }
 
-/* Grains move: the water that they displace keeps its momentum and its order, so that no velocity leaves the range there was. */
+/* Grains move: the water that they displace keeps its momentum and its order, so that no velocity leaves the range
+   there was. */
 static void displaced_water_keeps_its_momentum(void **state)
 {
   (void) state;

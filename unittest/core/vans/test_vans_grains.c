@@ -7,8 +7,8 @@
 
 #include <string.h>
 
-/* The slices share their cuts, so that only rounding is left: each is one subtraction, 1e-16 of the volume, and there are
- * up to 2000. */
+/* The slices share their cuts, so that only rounding is left: each is one subtraction, 1e-16 of the volume, and there
+ * are up to 2000. */
 static void slices_sum_to_the_sphere(void **state)
 {
   (void) state;
@@ -179,7 +179,8 @@ static void convective_force_is_taken_off(void **state)
   assert_true(F[0] == -0.7);
 }
 
-/* Above the mesh: the velocity of the surface and the phi of the last slice; below: water at rest and the phi of the first. */
+/* Above the mesh: the velocity of the surface and the phi of the last slice; below: water at rest and the phi of the
+   first. */
 static void grains_outside_feel_the_end_values(void **state)
 {
   (void) state;
@@ -201,8 +202,8 @@ static void grains_outside_feel_the_end_values(void **state)
   for (int k = 0; k < 6; k++) assert_true(F[k] == 0.0);
 }
 
-/* Moments over u_star^2 of the correlated walk: xx 2, yy 1, zz 1, xz -1; uncorrelated 1, 1, 1, 0. The error of a mean of n
- * = 4e5 is about 1/sqrt(n). */
+/* Moments over u_star^2 of the correlated walk: xx 2, yy 1, zz 1, xz -1; uncorrelated 1, 1, 1, 0. The error of a mean
+ * of n = 4e5 is about 1/sqrt(n). */
 static void fluctuations_have_their_moments(void **state)
 {
   (void) state;
@@ -325,8 +326,8 @@ static void eddies_live_as_long_as_the_length_over_the_velocity(void **state)
               sd_vans_eddy_life(1.0, 1e-6, 0.0, 7.0, 1e-3) == 10e-3);
 }
 
-/* Two equal spheres at distance h share a lens of volume pi (4a+h)(2a-h)^2/12; three in a chain; a sphere inside another;
- * three that meet. */
+/* Two equal spheres at distance h share a lens of volume pi (4a+h)(2a-h)^2/12; three in a chain; a sphere inside
+ * another; three that meet. */
 static void overlaps_count_once(void **state)
 {
   (void) state;

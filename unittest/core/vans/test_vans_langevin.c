@@ -34,8 +34,9 @@ static void grains_spread_by_taylors_formula(void **state)
   assert_true(fabs(stress / -0.09 - 1.0) < 0.08);
 }
 
-/* Grains without weight, spread evenly between a bottom and a top that mirror them, stay so in turbulence that is three times
- * as strong at the top, with T that changes twentyfold. Without the slope of sigma in the walk the lowest tenth gains 55 %. */
+/* Grains without weight, spread evenly between a bottom and a top that mirror them, stay so in turbulence that is three
+ * times as strong at the top, with T that changes twentyfold. Without the slope of sigma in the walk the lowest tenth
+ * gains 55 %. */
 static void even_grains_stay_even_where_the_turbulence_is_not(void **state)
 {
   (void) state;
@@ -66,8 +67,8 @@ static void even_grains_stay_even_where_the_turbulence_is_not(void **state)
     assert_true(fabs(bins[b] * (double) BINS / GRAINS - 1.0) < 5 * sqrt((double) BINS / GRAINS));
 }
 
-/* Even turbulence from a bottom that mirrors up to the surface, whose water turns back by itself: grains without weight stay
- * evenly spread up to it, and those that pass it return within a few steps. */
+/* Even turbulence from a bottom that mirrors up to the surface, whose water turns back by itself: grains without weight
+ * stay evenly spread up to it, and those that pass it return within a few steps. */
 static void light_grains_do_not_gather_at_the_surface(void **state)
 {
   (void) state;

@@ -1,6 +1,6 @@
-/* Forces, averages and fluid solves against the reference tables, under both rules. Tolerances: the tables have 17 digits;
- * forces and averages are sums of a few tens of terms (1e-12 of the largest entry), a fluid solve is
- * a hundred tridiagonal solves (1e-9). */
+/* Forces, averages and fluid solves against the reference tables, under both rules. Tolerances: the tables have 17
+ * digits; forces and averages are sums of a few tens of terms (1e-12 of the largest entry), a fluid solve is a hundred
+ * tridiagonal solves (1e-9). */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

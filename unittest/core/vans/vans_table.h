@@ -1,5 +1,5 @@
-/* Tables of unittest/data/vans: "# key = value" lines, one line of column names, then numbers; a column may end before the
- * others. */
+/* Tables of unittest/data/vans: "# key = value" lines, one line of column names, then numbers; a column may end before
+ * the others. */
 #ifndef VANS_TABLE_H
 #define VANS_TABLE_H
 

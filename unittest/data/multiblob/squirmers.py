@@ -1,9 +1,10 @@
 """Makes squirmers.csv: velocities of two squirmers, and of one above a no-slip wall z = 0, exactly.
 
-Radius 1, viscosity 1, no forces and torques. Point forces inside of each sphere (with Blake's images above the wall) and the rigid motions
-are found by least squares from the slip at points of the surfaces; 150 points more or fewer change the velocities by less than 2e-5 at
-distances from 2.5 and heights from 1.6.
-Slip: Blake 1971, J. Fluid Mech. 46, 199; with the azimuthal part beta cos theta sin theta. Images: Blake 1971, Proc. Camb. Phil. Soc. 70, 303.
+Radius 1, viscosity 1, no forces and torques. Point forces inside of each sphere (with Blake's images above the wall)
+and the rigid motions are found by least squares from the slip at points of the surfaces; 150 points more or fewer
+change the velocities by less than 2e-5 at distances from 2.5 and heights from 1.6.
+Slip: Blake 1971, J. Fluid Mech. 46, 199; with the azimuthal part beta cos theta sin theta.
+Images: Blake 1971, Proc. Camb. Phil. Soc. 70, 303.
 Usage: python3 squirmers.py > squirmers.csv   (2 minutes)"""
 import numpy as np
 
@@ -63,7 +64,8 @@ def exact(x, e, B, wall, n=250, m=700, inside=0.5):
 def main():
     e = [(0.6, 0.0, 0.8), (0.0, 1.0, 0.0)]
     B = [(1.0, -3.0, 0.5), (0.7, 2.0, 0.0)]
-    print("# exact squirmers: squirmers.py beside this file; radius 1, viscosity 1, free; wall 1: above a no-slip wall z = 0")
+    print("# exact squirmers: squirmers.py beside this file; radius 1, viscosity 1, free; wall 1: "
+          "above a no-slip wall z = 0")
     print("case,wall,x,y,z,ex,ey,ez,B1,B2,beta,Ux,Uy,Uz,Wx,Wy,Wz")
     cases = [(0, [(0, 0, 0), (s, 0, 0)]) for s in (2.5, 3.0, 4.0, 6.0)] + [(1, [(0, 0, h)]) for h in (1.6, 2.0, 3.0)]
     for k, (wall, x) in enumerate(cases):

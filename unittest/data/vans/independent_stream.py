@@ -1,9 +1,10 @@
 """An independent model of one solve of the stream (numpy, dense matrices), for two tables:
     python3 independent_stream.py fluid_turb_lm2_wall > fluid_turb_lm2_wall.consistent.csv
     python3 independent_stream.py fluid_turb_lm5 > fluid_turb_lm5.consistent.csv
-fluid_turb_lm2_wall has side walls. The friction factor is the root of 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32, by bisection, with Re on the
-hydraulic radius, half the width, or the laminar 24/Re where that is the larger (below Re 0.02 the law of turbulent streams would be larger again:
-it does not count there). fluid_turb_lm5 has grains of two radii; pores and the mean diameter 6 V/S are of as many grains of either as there are."""
+fluid_turb_lm2_wall has side walls. The friction factor is the root of 1/sqrt(f) = 2 log10(Re sqrt(f)) + 0.32, by
+bisection, with Re on the hydraulic radius, half the width, or the laminar 24/Re where that is the larger (below Re 0.02
+the law of turbulent streams would be larger again: it does not count there). fluid_turb_lm5 has grains of two radii;
+pores and the mean diameter 6 V/S are of as many grains of either as there are."""
 import os
 import sys
 
@@ -88,7 +89,8 @@ def solve(header, c, friction=friction, sums=sums_of_grains):
     for _ in range(steps):
         nut = l ** 2 * np.abs(U[1:] - U[:-1]) / h
         speed = np.maximum(np.abs(U[1:N]), 1e-10 * nu / (0.5 * width))
-        wall = key("fluidWallFriction") * e[:M] * 2 / width * coef * friction(np.maximum(speed * 0.5 * width / nu, 1e-10)) / 8 * speed / 2
+        wall = key("fluidWallFriction") * e[:M] * 2 / width * coef * friction(
+            np.maximum(speed * 0.5 * width / nu, 1e-10)) / 8 * speed / 2
         A, r = np.zeros((M, M)), np.zeros(M)
         for j in range(M):                                     # the row of slice j, unknown U'[j + 1]
             A[j, j] += e[j] / dt + b[j] + wall[j]

@@ -1,5 +1,5 @@
-"""The examples that take seconds: every figure of their READMEs holds, and a run leaves what is kept in the repository alone.
-examples/run.sh all runs the rest of them too."""
+"""The examples that take seconds: every figure of their READMEs holds, and a run leaves what is kept in the repository
+alone. examples/run.sh all runs the rest of them too."""
 import hashlib
 import pathlib
 import re
@@ -11,11 +11,11 @@ import pytest
 from host import PATIENCE, environment
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[3] / "examples"
-QUICK = ["clump_resistance", "dense_settling", "first_look", "fixed_bed", "landing", "notebook", "python_clump", "rolling", "slit_bead",
-         "squeeze", "vans_drag", "vans_fluid", "vans_fluidised", "wall_shear"]
+QUICK = ["clump_resistance", "dense_settling", "first_look", "fixed_bed", "landing", "notebook", "python_clump",
+         "rolling", "slit_bead", "squeeze", "vans_drag", "vans_fluid", "vans_fluidised", "wall_shear"]
 # by their option --quick
-BRIEF = ["active", "cfd_coupling", "fibres", "hele_shaw", "magnetic", "rheology", "roller_layer", "settling_layer", "shapes", "ship",
-         "swimmers", "tumbling", "vans_sorting", "vans_waves"]
+BRIEF = ["active", "cfd_coupling", "fibres", "hele_shaw", "magnetic", "rheology", "roller_layer", "settling_layer",
+         "shapes", "ship", "swimmers", "tumbling", "vans_sorting", "vans_waves"]
 
 
 # how a warning about a command of LAMMPS beside ours begins (common/neighbours.h)
@@ -35,21 +35,23 @@ def kept(folder):
 def test_every_figure_of_an_example_holds(name, tmp_path):
     before = kept(EXAMPLES / name)
     env = dict(environment(), PYTHONDONTWRITEBYTECODE="1", MPLCONFIGDIR=str(tmp_path / "matplotlib"))
-    command = [sys.executable, str(EXAMPLES / name / "run.py"), "--out", str(tmp_path / "out")] + ["--quick"] * (name in BRIEF)
+    command = [sys.executable, str(EXAMPLES / name / "run.py"), "--out",
+               str(tmp_path / "out")] + ["--quick"] * (name in BRIEF)
     run = subprocess.run(command, env=env, cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                          stderr=subprocess.STDOUT, text=True, timeout=PATIENCE)
     assert run.returncode == 0, run.stdout[-3000:]
     assert not re.search("^MISSED", run.stdout, re.M), run.stdout[-3000:]
     assert len(re.findall("^ok  ", run.stdout, re.M)) >= 5, run.stdout[-3000:]
     assert kept(EXAMPLES / name) == before
-    assert not neighbours_warned_of(*(path for path in (tmp_path / "out").rglob("*") if path.is_file() and "log" in path.name))
+    assert not neighbours_warned_of(*(path for path in (tmp_path / "out").rglob("*") if path.is_file() and
+                                      "log" in path.name))
 
 
-# --- the logs that are kept beside the examples -------------------------------------------------------------------------------
+# --- the logs that are kept beside the examples -----------------------------------------------------------------------
 
 def commands(script):
-    """The lines of an input script that LAMMPS echoes, continued ones as one, blanks as one blank. None stands for a label: when a jump
-    goes there, LAMMPS echoes neither the label nor what it skips."""
+    """The lines of an input script that LAMMPS echoes, continued ones as one, blanks as one blank. None stands for a
+    label: when a jump goes there, LAMMPS echoes neither the label nor what it skips."""
     text = re.sub(r"^(echo\s+none)$.*?^echo\s+log$", r"\1", re.sub(r"&[ \t]*\n", "", script), flags=re.S | re.M)
     lines = [" ".join(line.split()) for line in text.splitlines() if line.strip()]
     return [None if line.startswith("label ") else line for line in lines]
@@ -79,7 +81,8 @@ def test_logs_of_examples_are_of_this_version(log):
     between_releases = re.search("^## To come", (package / "CHANGELOG.md").read_text(), re.M)
     version = (package / "VERSION").read_text().strip() + ("+" if between_releases else "")
     text = log.read_text()
-    assert re.findall("^PKG-STOKESDYN ([^,]+), built for LAMMPS", text, re.M) == [version], "run the example's run.py --update"
+    assert re.findall("^PKG-STOKESDYN ([^,]+), built for LAMMPS", text,
+                      re.M) == [version], "run the example's run.py --update"
     assert not not_echoed((log.parent / f"in.{log.parent.name}").read_text(), text), "the input has changed since"
 
 
@@ -89,7 +92,8 @@ def test_there_are_logs():
 
 def test_no_log_has_a_warning_of_a_command_beside_ours(tmp_path):
     assert not neighbours_warned_of(*LOGS)
-    (tmp_path / "log").write_text("WARNING: Pair style stokes_dynamics: compute P of style pressure knows nothing (x.cpp:9)\n"
+    (tmp_path / "log").write_text("WARNING: Pair style stokes_dynamics: compute P of style pressure knows "
+                                  "nothing (x.cpp:9)\n"
                                   "WARNING: Fix stokes_dynamics/overdamped: pair_style granular must have no damping\n")
     assert len(neighbours_warned_of(tmp_path / "log")) == 2
 
@@ -100,7 +104,7 @@ def test_a_changed_input_is_seen():
     assert not_echoed("units lj\nthermo 7\nrun 5\n", log) == ["thermo 7"]
 
 
-# --- checks.py --------------------------------------------------------------------------------------------------------------
+# --- checks.py --------------------------------------------------------------------------------------------------------
 
 @pytest.fixture
 def checks(monkeypatch):
@@ -119,7 +123,8 @@ def test_a_figure_that_is_off_is_missed(checks, capsys, value):
 
 
 def test_limits_belong_to_what_is_allowed(checks):
-    assert checks.below("overlap", 0.02, 0.02) and checks.within("speed", 0.93, 0.93, 1.02) and checks.holds("it stands", True)
+    assert checks.below("overlap", 0.02, 0.02) and checks.within("speed", 0.93, 0.93,
+                                                                 1.02) and checks.holds("it stands", True)
     assert checks.finish() == 0
     assert not checks.below("overlap", 0.0201, 0.02) and not checks.within("speed", 1.03, 0.93, 1.02)
     assert not checks.holds("it stands", False)

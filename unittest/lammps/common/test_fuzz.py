@@ -1,5 +1,5 @@
-"""Commands by grammar and mutation (fuzz.py): no crash, no hang, nothing accepted that the pages call wrong, nothing refused that
-they call right, and every error names its command and keyword."""
+"""Commands by grammar and mutation (fuzz.py): no crash, no hang, nothing accepted that the pages call wrong, nothing
+refused that they call right, and every error names its command and keyword."""
 import select
 
 import pytest
@@ -19,7 +19,7 @@ def test_300_commands_do_what_the_pages_say():
     assert found.defects == 0, found.table() + found.examples(3)
 
 
-# --- the judge --------------------------------------------------------------------------------------------------------------
+# --- the judge --------------------------------------------------------------------------------------------------------
 
 class Read(fuzz_grammar.Case):
     """A command that is given, not drawn."""
@@ -33,24 +33,29 @@ class Read(fuzz_grammar.Case):
 
 @pytest.mark.parametrize("words, level", [
     ("", "good"), ("algorithm 2 rotation yes", "good"), ("visc v_eta", "loud"), ("update_every 0", "bad"),
-    ("max_iter 1e3", "bad"), ("shell 12", "bad"), ("clumps_only yes rigid_clumps yes shell 12", "odd"), ("relative_tolerance 1", "bad"),
-    ("relative_tolerance 0.5", "loud"), ("fluid_velocity 0 0", "bad"), ("fluid_velocity 0 0 0x1", "bad"), ("tensor RPY", "bad"),
-    ("taper wendland", "bad"), ("precondition sparse", "bad"), ("precondition sparse algorithm 2", "good"), ("bogus", "bad")])
+    ("max_iter 1e3", "bad"), ("shell 12", "bad"), ("clumps_only yes rigid_clumps yes shell 12", "odd"),
+    ("relative_tolerance 1", "bad"), ("relative_tolerance 0.5", "loud"), ("fluid_velocity 0 0", "bad"),
+    ("fluid_velocity 0 0 0x1", "bad"), ("tensor RPY", "bad"),
+    ("taper wendland", "bad"), ("precondition sparse", "bad"), ("precondition sparse algorithm 2", "good"),
+    ("bogus", "bad")])
 def test_the_judge_reads_as_the_page_of_the_pair_style(words, level):
     assert Read(fuzz_stokes.judge_stokes, f"{STOKES} {words}").level == level
 
 
 @pytest.mark.parametrize("words, level", [
     ("", "good"), ("couple one", "good"), ("couple both", "bad"), ("solve 1 2", "bad"), ("solve 1 1e-9", "loud"),
-    ("phi_max 1.1", "bad"), ("lift off", "good"), ("lift on", "bad"), ("class_radii 2 0.003", "bad"), ("fluctuation depth 1", "bad"),
-    ("fluctuation depth 1 auto", "good"), ("profile file short.txt", "bad"), ("mesh 20 0.001 0", "loud")])
+    ("phi_max 1.1", "bad"), ("lift off", "good"), ("lift on", "bad"), ("class_radii 2 0.003", "bad"),
+    ("fluctuation depth 1", "bad"), ("fluctuation depth 1 auto", "good"), ("profile file short.txt", "bad"),
+    ("mesh 20 0.001 0", "loud")])
 def test_the_judge_reads_as_the_page_of_the_stream(words, level):
-    assert Read(fuzz_vans.judge_vans, f"1 mesh 20 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 {words}", "usual").level == level
+    assert Read(fuzz_vans.judge_vans, f"1 mesh 20 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 {words}",
+                "usual").level == level
 
 
 @pytest.mark.parametrize("words, result, wanted", [
     ("bogus", {"error": ""}, "accepted, though the pages call it wrong"),
-    ("bogus", {"error": "ERROR: Pair style stokes_dynamics: unknown keyword 'bogus'"}, "error that names command and keyword"),
+    ("bogus", {"error": "ERROR: Pair style stokes_dynamics: unknown keyword 'bogus'"},
+     "error that names command and keyword"),
     ("bogus", {"error": "ERROR: Pair style stokes_dynamics: wrong"}, "error does not name the keyword"),
     ("bogus", {"error": "ERROR: wrong"}, "error does not name the command"),
     ("", {"error": "ERROR: Pair style stokes_dynamics: keyword visc: no"}, "refused, though valid"),

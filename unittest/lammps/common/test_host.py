@@ -15,13 +15,15 @@ def mpich(monkeypatch):
 
 
 def test_mpich_has_as_many_as_cores(mpich):
-    assert host.allowed(1, 2, 4) == [1, 2] and host.allowed((2, "on"), (4, "off")) == [(2, "on")] and host.at_most(3) == 2
+    assert host.allowed(1, 2, 4) == [1, 2] and host.allowed((2, "on"),
+                                                            (4, "off")) == [(2, "on")] and host.at_most(3) == 2
     with pytest.raises(AssertionError, match="3 ranks where there may be 2"):
         host.mpirun(3)
 
 
 def test_ranks_of_mpich_wait_for_those_of_another_test(mpich, tmp_path, monkeypatch):
-    """Each of three programs writes that it has begun, and some time later that it has ended: none begins in between."""
+    """Each of three programs writes that it has begun, and some time later that it has ended: none begins in
+    between."""
     monkeypatch.setattr(host.tempfile, "gettempdir", lambda: str(tmp_path))
     script = f"echo begins >> {tmp_path}/said; sleep 0.2; echo ends >> {tmp_path}/said"
     for process in [subprocess.Popen(host.one_at_a_time() + ["sh", "-c", script]) for _ in range(3)]:

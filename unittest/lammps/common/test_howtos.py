@@ -1,7 +1,8 @@
 """The howtos run as they stand on the page, commands pasted into a shell, and print what the page says.
 
-A block of a page whose first line is "# NAME" with a dot in NAME is that file. A block that begins with "Step" is what the log of
-the input before it must hold. The first block of commands, which begins with ". build/env.sh", is pasted as it is."""
+A block of a page whose first line is "# NAME" with a dot in NAME is that file. A block that begins with "Step" is what
+the log of the input before it must hold. The first block of commands, which begins with ". build/env.sh", is pasted as
+it is."""
 import os
 import pathlib
 import re
@@ -43,13 +44,14 @@ def blocks(name):
 
 
 def paste(commands, clone):
-    """What the commands print in a shell that stands in a clone. The clone is a folder with links: what they write stays here."""
+    """What the commands print in a shell that stands in a clone. The clone is a folder with links: what they write
+    stays here."""
     for name in ("PKG-STOKESDYN", "examples", "build"):
         (clone / name).symlink_to(TOP / name if name != "build" else os.environ["LAMMPS_PLUGIN_PATH"])
     env = {key: value for key, value in environment().items() if not key.startswith(("LAMMPS_", "LD_", "PYTHONPATH"))}
     env["PATH"] = os.path.dirname(sys.executable) + ":" + env["PATH"]      # the python3 that has numpy
-    done = subprocess.run(["bash", "-e"], input=commands, cwd=clone, env=dict(env, MPLCONFIGDIR=str(clone)), stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, timeout=PATIENCE)
+    done = subprocess.run(["bash", "-e"], input=commands, cwd=clone, env=dict(env, MPLCONFIGDIR=str(clone)),
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=PATIENCE)
     assert done.returncode == 0, done.stdout[-3000:]
     return done.stdout
 
@@ -75,8 +77,10 @@ def test_a_howto_runs_as_it_stands(name, tmp_path):
             found = re.search(rf"^ *{row[0]} +(.*)$", table, re.M)
             assert found, f"no row {row[0]} below {head}"
             for column, wanted, got in zip(head[1:], row[1:], found.group(1).split()):
-                assert float(got) == pytest.approx(float(wanted), rel=HOWTOS[name].get(column, 1e-3)), (column, wanted, got)
-    for picture in re.findall(r"\]\((howto_\w+)\.png\)", page):    # LAMMPS itself writes it as PPM, which every LAMMPS can
+                assert float(got) == pytest.approx(float(wanted),
+                                                   rel=HOWTOS[name].get(column, 1e-3)), (column, wanted, got)
+    # LAMMPS itself writes it as PPM, which every LAMMPS can
+    for picture in re.findall(r"\]\((howto_\w+)\.png\)", page):
         assert max(file.stat().st_size for file in (tmp_path / "try").glob(picture + ".p[np][gm]")) > 2000, picture
     if name == "cfd":
         assert float(re.search(r"momentum lost (\S+)", said).group(1)) < 1e-12
@@ -94,7 +98,8 @@ def test_a_howto_runs_as_it_stands(name, tmp_path):
 
 
 def test_every_howto_with_an_input_is_followed():
-    with_input = {path.stem[len("howto_"):] for path in DOC.glob("howto_*.md") if re.search(r"^```\n# in\.", path.read_text(), re.M)}
+    with_input = {path.stem[len("howto_"):] for path in DOC.glob("howto_*.md")
+                  if re.search(r"^```\n# in\.", path.read_text(), re.M)}
     assert with_input <= set(HOWTOS)
 
 
@@ -107,10 +112,12 @@ def test_the_commands_of_the_readme_settle_a_rod_as_it_says(tmp_path):
     assert found == pytest.approx(said, rel=1e-3) and found == pytest.approx(exact, rel=1e-2)
 
 
-@pytest.mark.parametrize("path", sorted(DOC.glob("howto_*.md")) + sorted((TOP / "examples").glob("*/README.md")) + [TOP / "README.md"],
+@pytest.mark.parametrize("path", sorted(DOC.glob("howto_*.md")) + sorted((TOP / "examples").glob("*/README.md")) +
+                         [TOP / "README.md"],
                          ids=lambda path: path.stem if path.parent == DOC else path.parent.name)
 def test_commands_begin_where_a_shell_stands_in_the_clone(path):
-    """One convention: a block that runs LAMMPS or an example says . build/env.sh first and then goes to the folder that it needs."""
+    """One convention: a block that runs LAMMPS or an example says . build/env.sh first and then goes to the folder that
+    it needs."""
     text = re.sub(r"```\n.*?```", "", path.read_text(), flags=re.S)
     for block in re.findall(r"(?:^    .*\n|^\n(?=    ))+", text, re.M):
         lines = [line[4:].split("#")[0].strip() for line in block.splitlines() if line]

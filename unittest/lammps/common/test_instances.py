@@ -1,4 +1,5 @@
-"""Several LAMMPS in one process: each that loads the plugin has all of its styles, whoever else has them, had them or gives them up."""
+"""Several LAMMPS in one process: each that loads the plugin has all of its styles, whoever else has them, had them or
+gives them up."""
 import subprocess
 import sys
 import textwrap
@@ -15,8 +16,8 @@ from lammps import lammps
 QUIET = ["-log", "none", "-screen", "none", "-nocite"]
 LOAD = "plugin load stokesdynplugin.so"
 SCENE = ["units lj", "atom_style sphere", "boundary f f f", "region box block -5 5 -5 5 -5 5", "create_box 1 box",
-         "create_atoms 1 single 0 0 0", "create_atoms 1 single 3 0 0", "set group all diameter 2 density 1", "velocity all set 0.3 0 0",
-         "fix 1 all nve/sphere", "timestep 1e-3"]
+         "create_atoms 1 single 0 0 0", "create_atoms 1 single 3 0 0", "set group all diameter 2 density 1",
+         "velocity all set 0.3 0 0", "fix 1 all nve/sphere", "timestep 1e-3"]
 STYLE = ["pair_style stokes_dynamics visc 1 cut_off_distance inf add_force yes", "pair_coeff * *"]
 
 
@@ -34,10 +35,12 @@ def go(lmp, *more):
 
 
 def right(lmp):
-    # every style of the plugin is there, of which the compute and the fixes are made here, and the fall of two spheres is as ever
+    # every style of the plugin is there, of which the compute and the fixes are made here, and the fall of two
+    # spheres is as ever
     do(lmp, *STYLE, "fix drag all stokes_dynamics", "run 2", "unfix drag")
-    for kind, name in (("pair", "stokes_dynamics"), ("pair", "sph/artVisc/tensCorr"), ("fix", "hydro/vans"), ("fix", "nve/sph"),
-                       ("fix", "stokes_dynamics/overdamped"), ("compute", "stokes_dynamics/stress"), ("compute", "sph/probe")):
+    for kind, name in (("pair", "stokes_dynamics"), ("pair", "sph/artVisc/tensCorr"), ("fix", "hydro/vans"),
+                       ("fix", "nve/sph"), ("fix", "stokes_dynamics/overdamped"), ("compute", "stokes_dynamics/stress"),
+                       ("compute", "sph/probe")):
         assert lmp.has_style(kind, name), (kind, name)
     return 0 < lmp.extract_atom("v")[0][0] < 0.3
 
@@ -123,7 +126,8 @@ CASES = {
         assert right(a)""",
     "each style unloaded and loaded again": """
         a = new(); go(a)
-        for kind, name in (("fix", "stokes_dynamics"), ("compute", "sph/energy"), ("fix", "hydro/vans"), ("pair", "stokes_dynamics")):
+        for kind, name in (("fix", "stokes_dynamics"), ("compute", "sph/energy"), ("fix", "hydro/vans"),
+                           ("pair", "stokes_dynamics")):
             do(a, f"plugin unload {kind} {name}")
             assert not a.has_style(kind, name)
             do(a, LOAD)
@@ -134,5 +138,6 @@ CASES = {
 @pytest.mark.parametrize("case", CASES)
 def test_each_lammps_of_a_process_that_loads_the_plugin_has_all_styles(tmp_path, case):
     script = HEAD + textwrap.dedent(CASES[case]) + "\nprint('right to the end')\n"
-    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env=environment(), capture_output=True, text=True, timeout=PATIENCE)
+    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env=environment(), capture_output=True,
+                          text=True, timeout=PATIENCE)
     assert done.returncode == 0 and "right to the end" in done.stdout, done.stdout + done.stderr

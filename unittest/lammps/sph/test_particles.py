@@ -1,4 +1,5 @@
-"""examples/ship/particles.py and examples/surfaces.py: who is inside, walls as thick as the reach, what is refused, what LAMMPS reads."""
+"""examples/ship/particles.py and examples/surfaces.py: who is inside, walls as thick as the reach, what is refused,
+what LAMMPS reads."""
 import pathlib
 
 import numpy as np
@@ -46,10 +47,13 @@ def test_nodes_below_edges_and_corners_are_counted_once(surfaces):
 
 def test_units_scale_turn_and_place(particles, surfaces, tmp_path):
     surfaces.write_stl(tmp_path / "rod.stl", 1000 * surfaces.rod(0.4, 0.1))
-    one, two, three = (particles.Part([str(tmp_path / "rod.stl"), "scale", scale, "turn", "y", "90", "at", "1", "2", "3"])
+    one, two, three = (particles.Part([str(tmp_path / "rod.stl"), "scale", scale, "turn", "y", "90", "at", "1", "2",
+                                       "3"])
                        for scale in ("mm", "0.001", "cm"))
-    assert np.array_equal(one.triangles, two.triangles) and np.allclose(three.triangles - [1, 2, 3], 10 * (one.triangles - [1, 2, 3]))
-    assert np.allclose(np.sum(one.box(), axis=0) / 2, [1, 2, 3]) and np.allclose(np.subtract(*one.box()[::-1]), [0.6, 0.2, 0.2], rtol=1e-5)
+    assert np.array_equal(one.triangles, two.triangles) and np.allclose(three.triangles - [1, 2, 3],
+                                                                        10 * (one.triangles - [1, 2, 3]))
+    assert np.allclose(np.sum(one.box(), axis=0) / 2, [1, 2, 3]) and np.allclose(np.subtract(*one.box()[::-1]),
+                                                                                 [0.6, 0.2, 0.2], rtol=1e-5)
 
 
 def test_every_place_that_water_feels_beyond_its_walls_has_a_particle(particles):
@@ -68,14 +72,16 @@ def test_mass_and_inertia_are_of_the_solid_and_its_own_density(particles, tmp_pa
     row = [float(word) for word in (tmp_path / "a.3.body").read_text().split()[1:]]
     mass = 400 * 4 / 3 * np.pi * 0.3 * 0.2 * 0.15
     assert row[0] == 1 and np.allclose(row[2:5], AT[1:], rtol=1e-6) and len(row) == 20
-    assert np.allclose([row[1], *row[5:8]], [mass, *(mass / 5 * np.array([0.0625, 0.1125, 0.13]))], rtol=0.02) and np.allclose(row[8:11], 0)
+    assert np.allclose([row[1], *row[5:8]], [mass, *(mass / 5 * np.array([0.0625, 0.1125, 0.13]))],
+                       rtol=0.02) and np.allclose(row[8:11], 0)
 
 
 def test_fit_brings_the_volume_of_particles_to_that_of_the_body(particles, capsys):
     place = ("at", 0.5, 0.4, 0.3)
     plain = scene(particles, "--body", "disc", 0.2, 0.26, *place)
     fitted = scene(particles, "--body", "disc", 0.2, 0.26, *place, "--fit")
-    volume = [abs(s.solids[0].sum() * 0.05**3 / particles.volume_and_centre(s.parts[0].triangles)[0] - 1) for s in (plain, fitted)]
+    volume = [abs(s.solids[0].sum() * 0.05**3 / particles.volume_and_centre(s.parts[0].triangles)[0] - 1)
+              for s in (plain, fitted)]
     assert volume[1] < volume[0] and np.abs(fitted.parts[0].box()[0] - plain.parts[0].box()[0]).max() < 0.0126
     assert "moved by" in capsys.readouterr().out
 
@@ -90,8 +96,9 @@ def test_fit_brings_the_volume_of_particles_to_that_of_the_body(particles, capsy
     ("--body cube 0.2 at 0.5 0.4 0.3 --body ball.stl at 0.5 0.4 0.3", "ball.stl: .* stand in another part"),
     ("--body cube 0.2 sclae 2", "sclae: known are scale S"), ("--body cube 0.2 scale km", "scale km: not a number"),
     ("--body cube 0.2 scale 0", "scale 0: must be > 0"), ("--body cube 0.2 turn w 3", "turn w: the axis"),
-    ("--body cube 0.2 density -1", "density -1: must be > 0"), ("--level -1", "level -1: there is no room"), ("--h 0.5", "--h 0.5: must"),
-    ("--spacing 0", "--spacing 0: must be > 0"), ("--body cube 1e4 at 0 0 0", "too many. Are spacing and scale in the same unit")])
+    ("--body cube 0.2 density -1", "density -1: must be > 0"), ("--level -1", "level -1: there is no room"),
+    ("--h 0.5", "--h 0.5: must"), ("--spacing 0", "--spacing 0: must be > 0"),
+    ("--body cube 1e4 at 0 0 0", "too many. Are spacing and scale in the same unit")])
 def test_what_cannot_be_is_refused_and_named(particles, surfaces, tmp_path, monkeypatch, words, message):
     ball = surfaces.sphere_mesh(5) * 0.2
     surfaces.write_stl(tmp_path / "ball.stl", ball)
@@ -124,7 +131,8 @@ def test_thin_plates_are_warned_of_and_sealed_rooms_stay_dry(particles, surfaces
 def test_lammps_reads_what_is_written(particles, tmp_path):
     import sph_tools
 
-    found = scene(particles, "--body", "ellipsoid", 0.3, 0.2, 0.15, *AT, "--wall", "cube", 0.1, "at", 0.9, 0.7, 0.05, "--out", tmp_path / "a")
+    found = scene(particles, "--body", "ellipsoid", 0.3, 0.2, 0.15, *AT, "--wall", "cube", 0.1, "at", 0.9, 0.7, 0.05,
+                  "--out", tmp_path / "a")
     lmp = sph_tools.start()
     sph_tools.run(lmp, f"units si\natom_style sph\nboundary f f f\nread_data {tmp_path}/a.data")
     x, kind = found.particles()

@@ -1,4 +1,5 @@
-"""Per-atom output of fix sph/pressure and sph/density/continuity between runs: each atom keeps its own value of the latest force."""
+"""Per-atom output of fix sph/pressure and sph/density/continuity between runs: each atom keeps its own value of the
+latest force."""
 import numpy as np
 import pytest
 
@@ -12,7 +13,8 @@ CHANGES = {
     "atoms are created": "create_atoms 1 random 40 4711 NULL",
     "many atoms are created": "create_atoms 1 random 40000 4711 NULL",
     "the pair style goes": "pair_style none",
-    "the pair style goes and atoms are deleted": "pair_style none\ngroup some id 1:60:7\ndelete_atoms group some compress no",
+    "the pair style goes and atoms are deleted": "pair_style none\ngroup some id 1:60:7\n"
+                                                 "delete_atoms group some compress no",
     "the fix that moves goes": "unfix move",
     "the order of atoms changes": "atom_modify sort 1 0.02\nrun 0 post no",
 }

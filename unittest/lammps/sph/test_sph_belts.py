@@ -1,5 +1,5 @@
-"""Wall particles that have a velocity and keep their place: the lid of a cavity, a belt, a wall that fix move no longer moves. They rub
-the water and neither make nor take any."""
+"""Wall particles that have a velocity and keep their place: the lid of a cavity, a belt, a wall that fix move no longer
+moves. They rub the water and neither make nor take any."""
 import numpy as np
 import pytest
 
@@ -42,7 +42,8 @@ SHORT, WIDE = "0 1", "INF INF"
 
 
 def water(lid, motion, scheme="shift yes", steps=400):
-    """The LAMMPS after these steps; x, v and density of the water, by ID; and the IDs of all that were water at first."""
+    """The LAMMPS after these steps; x, v and density of the water, by ID; and the IDs of all that were water at
+    first."""
     lmp = start()
     run(lmp, CAVITY.format(lid=lid, motion=motion, scheme=scheme) + f"run {steps}")
     flows = by_id(lmp, "type") == 1
@@ -50,10 +51,11 @@ def water(lid, motion, scheme="shift yes", steps=400):
     return lmp, by_id(lmp, "x", 3)[flows], by_id(lmp, "v", 3)[flows], by_id(lmp, "rho")[flows]
 
 
-@pytest.mark.parametrize("lid, scheme", [(SHORT, ""), (SHORT, "shift yes"), (SHORT, "correction yes"), (WIDE, "shift yes")])
+@pytest.mark.parametrize("lid, scheme", [(SHORT, ""), (SHORT, "shift yes"), (SHORT, "correction yes"),
+                                         (WIDE, "shift yes")])
 def test_a_lid_neither_makes_nor_takes_water(lid, scheme):
-    """The water turns under a lid of a tenth of the speed of sound, so its density differs by about v^2/c^2 = 0.01. A lid that the
-    density took to move would be a source at one end of the cavity and a sink at the other."""
+    """The water turns under a lid of a tenth of the speed of sound, so its density differs by about v^2/c^2 = 0.01. A
+    lid that the density took to move would be a source at one end of the cavity and a sink at the other."""
     lmp, x, v, rho = water(lid, "velocity lid set 1 0 0 units box", scheme)
     lmp.close()
     assert ((x[:, :2] > 0) & (x[:, :2] < 1)).all()
@@ -67,7 +69,8 @@ def test_a_wall_that_fix_move_has_left_stands():
     lmp, x, _, rho = water(SHORT, motion, steps=600)
     moved = 0.08 * 100 * 5e-3
     lmp.close()
-    assert (x[:, 0] > moved - 0.02).all() and (x[:, 0] < 1 + moved + 0.02).all() and (x[:, 1] < 1.02).all() and (x[:, 1] > -0.02).all()
+    assert (x[:, 0] > moved - 0.02).all() and (x[:, 0] < 1 + moved + 0.02).all() and (x[:, 1] < 1.02).all() and (
+        x[:, 1] > -0.02).all()
     assert 0.97 < rho.min() and rho.max() < 1.03
 
 
@@ -86,7 +89,8 @@ def test_the_run_says_that_it_has_belts(tmp_path):
     log = tmp_path / "log"
     for speed, said in ((0, 0), (1, 1)):
         lmp = start(["-log", str(log)])
-        run(lmp, CAVITY.format(lid=SHORT, motion=f"velocity lid set {speed} 0 0 units box", scheme="shift yes") + "run 1")
+        run(lmp, CAVITY.format(lid=SHORT, motion=f"velocity lid set {speed} 0 0 units box", scheme="shift yes") +
+            "run 1")
         lmp.close()
         lines = [line for line in log.read_text().splitlines() if "particles of the wall have a velocity" in line]
         assert len(lines) == said

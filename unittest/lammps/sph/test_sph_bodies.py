@@ -1,5 +1,5 @@
-"""Walls and bodies that move: each has the pressure that its own acceleration asks for; a box floats where Archimedes has it, and heaves
-as linear theory says."""
+"""Walls and bodies that move: each has the pressure that its own acceleration asks for; a box floats where Archimedes
+has it, and heaves as linear theory says."""
 import os
 import re
 import sys
@@ -56,7 +56,8 @@ timestep 0.001
 
 
 def test_each_wall_has_the_pressure_of_its_own_acceleration():
-    """Two floors with water: one at rest, one that is lifted with twice gravity. Pressure grows into a floor as in the water over it."""
+    """Two floors with water: one at rest, one that is lifted with twice gravity. Pressure grows into a floor as in the
+    water over it."""
     lmp = start()
     run(lmp, FLOORS.format(own="yes") + "run 500 post no")
     y, P, types = by_id(lmp, "x", 3)[:, 1], fix_by_id(lmp, "eos"), by_id(lmp, "type")
@@ -70,13 +71,15 @@ def test_each_wall_has_the_pressure_of_its_own_acceleration():
 
 
 def test_water_stays_in_its_plane_beside_walls_that_do_not():
-    """Two dimensions: fix rigid turns its particles out of the plane by 1e-17. With shift the water followed, and z grew four times in every
-    200 steps of calm water, and in every 2 of an impact."""
+    """Two dimensions: fix rigid turns its particles out of the plane by 1e-17. With shift the water followed, and z
+    grew four times in every 200 steps of calm water, and in every 2 of an impact."""
     lmp = start()
-    scene = FLOORS.replace("wendland 0.1 artVisc 1 0 1e-4", "wendland 0.1 viscosity 0.01 central shift yes").format(own="yes")
+    scene = FLOORS.replace("wendland 0.1 artVisc 1 0 1e-4",
+                           "wendland 0.1 viscosity 0.01 central shift yes").format(own="yes")
     run(lmp, scene + "velocity water create 1e-4 4711\nrun 0 post no")
     n = lmp.extract_global("nlocal")
-    x, wall = lmp.numpy.extract_atom("x", nelem=n, dim=3)[:n], np.ravel(lmp.numpy.extract_atom("type", nelem=n))[:n] != 1
+    x, wall = lmp.numpy.extract_atom("x", nelem=n,
+                                     dim=3)[:n], np.ravel(lmp.numpy.extract_atom("type", nelem=n))[:n] != 1
     x[wall, 2] = 1e-9           # a command that moves atoms keeps them in the plane since 2024
     run(lmp, "run 100 post no")
     z, water = by_id(lmp, "x", 3)[:, 2], by_id(lmp, "type") == 1
@@ -85,7 +88,8 @@ def test_water_stays_in_its_plane_beside_walls_that_do_not():
 
 
 def test_moving_walls_on_any_number_of_ranks_and_over_restarts(tmp_path):
-    scene = FLOORS.format(own="yes") + "fix swing under move wiggle 0.02 0.01 0 0.3 units box\ncompute E water sph/energy\n"
+    scene = (FLOORS.format(own="yes") + "fix swing under move wiggle 0.02 0.01 0 0.3 units box\n"
+                                        "compute E water sph/energy\n")
     scene = re.sub("variable [oyv] .*\n|fix lift .*\n", "", scene)
     dump = "dump d all custom 100 %s.dump.* x y vx vy f_eos\ndump_modify d format float %%.17g\nrun %d post no\n"
 
@@ -107,12 +111,15 @@ def test_a_floating_box_heaves_as_linear_theory_says(tmp_path):
     """4 particles high: the period within 4 %, from the first to the fourth passage of its new place."""
     import linear
 
-    done = mpirun(1, open(os.path.join(EXAMPLE, "in.floating_box")).read().replace("index 40", "index 20").replace("density index 0.5", "density index 0.75")
-                  .replace("thermo        $(floor(0.02/dt))", "thermo 1").replace("thermo_style  custom step time v_y c_gauge[1] f_float[1][8] c_E[4]",
-                                                                                  "thermo_style custom time v_y")
+    done = mpirun(1, open(os.path.join(EXAMPLE, "in.floating_box")).read().replace("index 40", "index 20").replace(
+        "density index 0.5", "density index 0.75")
+                  .replace("thermo        $(floor(0.02/dt))",
+                           "thermo 1").replace("thermo_style  custom step time v_y c_gauge[1] f_float[1][8] c_E[4]",
+                                               "thermo_style custom time v_y")
                   .replace("time    index 3", "time index 6"), tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
-    rows = np.array([[float(w) for w in line.split()] for line in done.stdout.splitlines() if re.fullmatch(r"\s*[\d.e+-]+\s+0\.[45]\d*\s*", line)])
+    rows = np.array([[float(w) for w in line.split()] for line in done.stdout.splitlines()
+                     if re.fullmatch(r"\s*[\d.e+-]+\s+0\.[45]\d*\s*", line)])
 
     def passages(t, z):
         u = z - z[0] + 0.035
@@ -123,10 +130,13 @@ def test_a_floating_box_heaves_as_linear_theory_says(tmp_path):
 
 
 def test_a_body_that_begins_with_the_speed_of_the_water_keeps_it(tmp_path):
-    """Tank, water and body move at one speed; that of the body stands in the infile of fix rigid, and its particles get it after the setup. No
-    acceleration: plain scheme, walls that slip, so that nothing but a wrong pressure could take speed along x from the body."""
-    changes = [("index 40", "index 20"), (" shift yes", ""), ("block $(-v_layers) $(1+v_layers)", "block $(-v_layers) $(2+v_layers)"),
-               ("tank  block 0 1 0 1 INF INF units box side out", "outer block $(-v_layers) $(1+v_layers) INF INF INF INF units box\n"
+    """Tank, water and body move at one speed; that of the body stands in the infile of fix rigid, and its particles get
+    it after the setup. No acceleration: plain scheme, walls that slip, so that nothing but a wrong pressure could take
+    speed along x from the body."""
+    changes = [("index 40", "index 20"), (" shift yes", ""),
+               ("block $(-v_layers) $(1+v_layers)", "block $(-v_layers) $(2+v_layers)"),
+               ("tank  block 0 1 0 1 INF INF units box side out",
+                "outer block $(-v_layers) $(1+v_layers) INF INF INF INF units box\n"
                 "region inner block 0 1 0 1 INF INF units box side out\nregion tank intersect 2 outer inner"),
                ("neighbor      ", "set type 1*2 vx 0.3\nneighbor "), ("0.13/12) 0 0 0 0 0", "0.13/12) 0 0 0 0.3 0"),
                ("fix           flat", "group tank type 2\nfix drive tank move linear 0.3 0 0 units box\nfix flat")]
@@ -182,8 +192,8 @@ timestep 3e-3
 
 @pytest.mark.parametrize("scheme", ["correction yes", "shift yes", "shift pliant"])
 def test_a_body_does_not_feel_the_background_pressure(scheme):
-    """With correction it took a part of the added mass that grew with P0: 11 % at P0 = 50 rho a R, 24 % at 100; with shift it pushed the water
-    as well, which added some."""
+    """With correction it took a part of the added mass that grew with P0: 11 % at P0 = 50 rho a R, 24 % at 100; with
+    shift it pushed the water as well, which added some."""
     loads = []
     for background in (0.0, 2.0):
         lmp = start()
@@ -195,7 +205,8 @@ def test_a_body_does_not_feel_the_background_pressure(scheme):
 
 
 def test_rates_of_the_first_set_up_are_those_of_the_next():
-    """They see the densities that walls take from the fluid, not those of the input: 2.5 % of the largest rate apart before, with delta."""
+    """They see the densities that walls take from the fluid, not those of the input: 2.5 % of the largest rate apart
+    before, with delta."""
     lmp = start()
     run(lmp, FLOORS.format(own="yes") + "velocity water create 1e-4 4711\nset group walls sph/rho 1.02\nrun 0 post no")
     first = fix_by_id(lmp, "density")
@@ -242,16 +253,20 @@ DEEP = """
 """
 
 
-@pytest.mark.parametrize("s, y, h, held", [(0.98, 0.2, 2, True), (0.5, 0.2, 2, False), (0.995, 0.2, 3, True), (0.94, 0.2, 3, False), (1.02, 0.2, 2, True),
-                                           (0.9, 0.2, 2, False), (0.98, 0.5, 2, False)])
+@pytest.mark.parametrize("s, y, h, held", [(0.98, 0.2, 2, True), (0.5, 0.2, 2, False), (0.995, 0.2, 3, True),
+                                           (0.94, 0.2, 3, False), (1.02, 0.2, 2, True), (0.9, 0.2, 2, False),
+                                           (0.98, 0.5, 2, False)])
 def test_a_body_that_the_arrangement_of_particles_holds_is_warned_of(s, y, h, held, tmp_path):
-    """Its weight less that of the water, |1-s| rho g V, is weighed against 2 pi G L, G = 0.002 P (2 dx/h)^3, L^2 = V: at the depth 0.4 the first is
-    less where |1-s| < 0.035 for h of 2 spacings and 0.0104 for 3, at the depth 0.1 where it is less than 0.009."""
+    """Its weight less that of the water, |1-s| rho g V, is weighed against 2 pi G L, G = 0.002 P (2 dx/h)^3, L^2 = V:
+    at the depth 0.4 the first is less where |1-s| < 0.035 for h of 2 spacings and 0.0104 for 3, at the depth 0.1 where
+    it is less than 0.009."""
     done = mpirun(1, DEEP.format(s=s, y=y, h=h, more="shift pliant"), tmp_path)
     assert done.returncode == 0, done.stdout
     assert ("body 1 of fix float is moved by" in done.stdout) is held
     if held and s == 0.98:
-        weight, pressure, resists = map(float, re.search(r"is moved by (\S+), .*under the pressure (\S+) .*\n?.*resists with (\S+)", done.stdout).groups())
+        weight, pressure, resists = map(float,
+                                        re.search(r"is moved by (\S+), .*under the pressure (\S+) "
+                                                  r".*\n?.*resists with (\S+)", done.stdout).groups())
         V = weight / (0.02 * 9810)
         assert V == pytest.approx(np.pi * 0.08**2, rel=0.05) and pressure == pytest.approx(9810 * 0.4, rel=0.02)
         assert resists == pytest.approx(2 * np.pi * 0.002 * pressure * V**0.5, rel=1e-4)
@@ -261,7 +276,8 @@ def test_a_body_that_the_arrangement_of_particles_holds_is_warned_of(s, y, h, he
 def test_unless_shift_is_pliant_the_arrangement_holds_five_times_as_much(more, part, tmp_path):
     done = mpirun(1, DEEP.format(s=0.995, y=0.2, h=2, more=more), tmp_path)
     assert done.returncode == 0, done.stdout
-    pressure, resists, cure = re.search(r"under the pressure (\S+) .*\n?.*resists with (\S+) when .*stay; use (.*)", done.stdout).groups()
+    pressure, resists, cure = re.search(r"under the pressure (\S+) .*\n?.*resists with (\S+) when .*stay; use (.*)",
+                                        done.stdout).groups()
     assert float(resists) == pytest.approx(2 * np.pi * part * float(pressure) * (0.02**2 * 52) ** 0.5, rel=0.05)
     assert cure.startswith("h = 3 dx" if "pliant" in more else "shift pliant, or h = 3 dx")
 
@@ -294,8 +310,9 @@ SHEARED = """
 
 @pytest.mark.parametrize("jitter", [0, 0.003])
 def test_with_pliant_shift_rows_under_pressure_do_not_resist_shear(jitter):
-    """A wave u = 0.002 sin(2 pi y) that shears a lattice under the pressure 3: F = - V G u'' with G = 0.0036 P in the plain scheme, in which a body
-    that is nearly as heavy as the water comes to rest. With pliant shift it is a thirtieth, and the forces have the sum 0."""
+    """A wave u = 0.002 sin(2 pi y) that shears a lattice under the pressure 3: F = - V G u'' with G = 0.0036 P in the
+    plain scheme, in which a body that is nearly as heavy as the water comes to rest. With pliant shift it is a
+    thirtieth, and the forces have the sum 0."""
     def modulus(more, density):
         F = []
         for u in (0.0, 0.002):
@@ -317,8 +334,10 @@ def test_pliant_shift_is_shift_where_the_surface_cuts_every_support():
     F = []
     for more in ("shift yes", "shift pliant"):
         lmp = start()
-        patch = SHEARED.format(u=0.002, jitter=0.003, more=more, density="delta 0.1").replace("create_atoms 1 box", "region five block 0.4 0.524 0.4 0.524 INF INF "
-                                                                                              "units box\n    create_atoms 1 region five")
+        patch = SHEARED.format(u=0.002, jitter=0.003, more=more, density="delta 0.1").replace(
+            "create_atoms 1 box", "region five block 0.4 0.524 0.4 0.524 INF INF "
+                                                                                              "units box\n"
+                                  "    create_atoms 1 region five")
         run(lmp, patch)
         F.append(by_id(lmp, "f", 3))
         lmp.close()

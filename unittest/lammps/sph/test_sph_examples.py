@@ -1,5 +1,5 @@
-"""The SPH examples keep the figures of their READMEs: the quick ones here, all of them with examples/run.sh all. And what ends a run is
-seen."""
+"""The SPH examples keep the figures of their READMEs: the quick ones here, all of them with examples/run.sh all. And
+what ends a run is seen."""
 import os
 import subprocess
 import sys
@@ -11,15 +11,15 @@ from host import PATIENCE, environment
 EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "examples")
 
 
-@pytest.mark.parametrize("name", ["channel_flow", "dam_break_bed", "drops", "grain_cloud", "grains_in_water", "liggghts", "river_bump", "sph_order",
-                                  "still_water", "taylor_green"])
+@pytest.mark.parametrize("name", ["channel_flow", "dam_break_bed", "drops", "grain_cloud", "grains_in_water",
+                                  "liggghts", "river_bump", "sph_order", "still_water", "taylor_green"])
 def test_figures_hold(name):
-    done = subprocess.run([sys.executable, os.path.join(EXAMPLES, name, "run.py"), "--quick"], env=environment(), capture_output=True,
-                          text=True, timeout=PATIENCE)
+    done = subprocess.run([sys.executable, os.path.join(EXAMPLES, name, "run.py"), "--quick"], env=environment(),
+                          capture_output=True, text=True, timeout=PATIENCE)
     assert done.returncode == 0 and "\nok " in done.stdout and "MISSED" not in done.stdout, done.stdout + done.stderr
 
 
-# --- sph_order/flows.py ---------------------------------------------------------------------------------------------------------
+# --- sph_order/flows.py -----------------------------------------------------------------------------------------------
 
 @pytest.fixture
 def flows(monkeypatch):

@@ -1,4 +1,5 @@
-"""fix sph/grains: changes of an input that must not matter do not. relations.py draws others: ranks, newton, pieces, restarts, frames, hybrids."""
+"""fix sph/grains: changes of an input that must not matter do not. relations.py draws others: ranks, newton, pieces,
+restarts, frames, hybrids."""
 import re
 
 import numpy as np
@@ -11,7 +12,8 @@ WIDE = (6, 4, 14)
 places = np.random.default_rng(3).uniform((0.5, 0, 1), (5.5, 4, 14), (30, 3))
 TANK = scene(WIDE, 0.3, 8, 0.02, "drag beetstra", singles(places), 0.9, "p p f", gravity="0 0 -0.5", floor=4,
              before_fix="fix down all gravity 0.5 vector 0 0 -1\nvelocity grains set 0.1 -0.2 -0.3 units box")
-TANK = TANK.replace("set type 1*3 sph/rho 1", "set type 1 sph/rho 1\n    set type 2 sph/rho 1\n    set type 3 sph/rho 1")
+TANK = TANK.replace("set type 1*3 sph/rho 1", "set type 1 sph/rho 1\n    set type 2 sph/rho 1\n"
+                                              "    set type 3 sph/rho 1")
 
 
 def state(script, commands="run 30"):
@@ -21,7 +23,8 @@ def state(script, commands="run 30"):
     run(lmp, commands)
     n = lmp.extract_global("nlocal")
     order = np.argsort(np.array(lmp.numpy.extract_atom("id", nelem=n)).ravel()[:n])
-    found = by_id(lmp, "x", 3), by_id(lmp, "v", 3), by_id(lmp, "rmass"), fix_by_id(lmp, "eos"), np.array(lmp.numpy.extract_fix("g", 1, 2))[:n][order]
+    found = by_id(lmp, "x", 3), by_id(lmp, "v", 3), by_id(lmp, "rmass"), fix_by_id(lmp, "eos"), np.array(
+        lmp.numpy.extract_fix("g", 1, 2))[:n][order]
     lmp.close()
     return found
 
@@ -47,7 +50,8 @@ def renamed(script, names):
             words[1:3] = sorted(names[w] for w in words[1:3])
         elif words[0] in ("set", "group") and "type" in words:
             after = words.index("type") + 1
-            words[after:] = [names.get(w, w) if k == 0 or words[0] == "group" else w for k, w in enumerate(words[after:])]
+            words[after:] = [names.get(w, w) if k == 0 or words[0] == "group" else w
+                             for k, w in enumerate(words[after:])]
         return " ".join(words)
     return "\n".join(line(text.strip()) for text in script.split("\n"))
 
@@ -61,7 +65,8 @@ INPUTS = {
     "hybrid": TANK.replace("hybrid/overlay", "hybrid").replace("* * zero", "1*3 2 zero\n    pair_coeff 2 3 zero"),
     "diameters are set anew in each step": TANK.replace("hybrid sph sphere", "hybrid sph sphere 1").replace(
         "fix g grains", "variable d equal 0.9\n    fix same grains adapt 1 atom diameter v_d\n    fix g grains"),
-    "a third pair style": TANK.replace("zero 1", "zero 1 gran/hooke 0 0 0 0 0 0").replace("* * zero", "* * zero\n    pair_coeff 2 2 gran/hooke"),
+    "a third pair style": TANK.replace("zero 1", "zero 1 gran/hooke 0 0 0 0 0 0").replace(
+        "* * zero", "* * zero\n    pair_coeff 2 2 gran/hooke"),
 }
 
 
@@ -78,7 +83,8 @@ def test_twice_the_thickness_of_a_slice_is_twice_the_same(right):
         assert np.abs(np.sort(np.concatenate([one, one]), 0) - np.sort(two, 0)).max() < 1e-12
 
 
-@pytest.mark.parametrize("again, allowed", [("eos sph sph/pressure Tait %.17g 1 7" % (64 / 7), 1e-12), ("den sph sph/density/continuity delta 0.1 volume yes", 1e-12),
+@pytest.mark.parametrize("again, allowed", [("eos sph sph/pressure Tait %.17g 1 7" % (64 / 7), 1e-12),
+                                            ("den sph sph/density/continuity delta 0.1 volume yes", 1e-12),
                                             ("g grains sph/grains drag beetstra displace no", 2e-3)])
 def test_a_fix_that_is_defined_again_goes_on(again, allowed, right):
     """The coupling finds the drag anew: second order in the time step, here 1e-3 of the forces in that moment."""
@@ -87,11 +93,13 @@ def test_a_fix_that_is_defined_again_goes_on(again, allowed, right):
 
 
 def test_grains_pass_open_ends_with_the_water():
-    """Grains as heavy as the water that a plug flow carries from near an inlet through an outlet: nothing accelerates, and the water that comes in fills the
-    room that they leave."""
+    """Grains as heavy as the water that a plug flow carries from near an inlet through an outlet: nothing accelerates,
+    and the water that comes in fills the room that they leave."""
     lmp = start()
-    text = scene((24, 5, 5), 0.05, 10, 0.05, "", singles([(10.2, 2.4, 2.6), (11.2, 3.4, 1.6)]), 0.9, "f p p", density=1.0)
-    run(lmp, text + "velocity all set 1 0 0 units box\nfix in water sph/inlet xlo 7 7 velocity 1\nfix out water sph/outlet xhi 17 7 pressure 0\nrun 200")
+    text = scene((24, 5, 5), 0.05, 10, 0.05, "", singles([(10.2, 2.4, 2.6), (11.2, 3.4, 1.6)]), 0.9, "f p p",
+                 density=1.0)
+    run(lmp, text + "velocity all set 1 0 0 units box\nfix in water sph/inlet xlo 7 7 velocity 1\n"
+                    "fix out water sph/outlet xhi 17 7 pressure 0\nrun 200")
     x, v, m, kind = by_id(lmp, "x", 3)[:, 0], by_id(lmp, "v", 3), by_id(lmp, "rmass"), by_id(lmp, "type")
     lmp.close()
     assert np.abs(v - [1, 0, 0]).max() < 1e-9 and (x[kind == 2] > 17).all()
@@ -100,11 +108,12 @@ def test_grains_pass_open_ends_with_the_water():
 
 
 def test_the_discharge_of_an_inlet_is_that_of_the_water_between_the_grains():
-    """A bed at rest, phi 0.4, that reaches into the layer: Q of water alone, so that it flows with Q/(A (1 - phi)); 5 % for the end of the layer, where
-    grains stand at the surface of the water."""
+    """A bed at rest, phi 0.4, that reaches into the layer: Q of water alone, so that it flows with Q/(A (1 - phi)); 5 %
+    for the end of the layer, where grains stand at the surface of the water."""
     lmp = start()
     bed = "lattice sc 1 origin 0.5 0.5 0.5\nregion bed block 0 12 0 5 0 5 units box\ncreate_atoms 2 region bed"
-    run(lmp, scene((12, 5, 5), 0.5, 10, 0.05, "", bed, (6 / np.pi * 0.4) ** (1 / 3), "f p p", mover="") + "fix in water sph/inlet xlo 7 7 flow_rate 2.5\nrun 2")
+    run(lmp, scene((12, 5, 5), 0.5, 10, 0.05, "", bed, (6 / np.pi * 0.4) ** (1 / 3), "f p p", mover="") +
+        "fix in water sph/inlet xlo 7 7 flow_rate 2.5\nrun 2")
     x, v, kind = by_id(lmp, "x", 3)[:, 0], by_id(lmp, "v", 3)[:, 0], by_id(lmp, "type")
     lmp.close()
     assert v[(kind == 1) & (x < 7)] == pytest.approx(0.1 / 0.6, rel=0.05)

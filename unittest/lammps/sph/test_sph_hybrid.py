@@ -7,9 +7,12 @@ from sph_tools import mpirun, read_dump, run, start
 ZERO = "zero 0.001"
 # pair_style and pair_coeff lines; the types of the water are 1 and 2, and in a hybrid 3 is of the other style
 WAYS = {"alone": ["pair_style {sph}", "pair_coeff * * {coeff}"],
-        "hybrid": [f"pair_style hybrid {{sph}} {ZERO}", "pair_coeff 1*2 1*2 sph/artVisc/tensCorr {coeff}", "pair_coeff * 3 zero"],
-        "hybrid, zero first": [f"pair_style hybrid {ZERO} {{sph}}", "pair_coeff 1*2 1*2 sph/artVisc/tensCorr {coeff}", "pair_coeff * 3 zero"],
-        "hybrid/overlay": [f"pair_style hybrid/overlay {{sph}} {ZERO}", "pair_coeff * * sph/artVisc/tensCorr {coeff}", "pair_coeff * * zero"]}
+        "hybrid": [f"pair_style hybrid {{sph}} {ZERO}", "pair_coeff 1*2 1*2 sph/artVisc/tensCorr {coeff}",
+                   "pair_coeff * 3 zero"],
+        "hybrid, zero first": [f"pair_style hybrid {ZERO} {{sph}}", "pair_coeff 1*2 1*2 sph/artVisc/tensCorr {coeff}",
+                               "pair_coeff * 3 zero"],
+        "hybrid/overlay": [f"pair_style hybrid/overlay {{sph}} {ZERO}", "pair_coeff * * sph/artVisc/tensCorr {coeff}",
+                           "pair_coeff * * zero"]}
 BELOW = sorted(set(WAYS) - {"alone"})
 
 
@@ -58,7 +61,8 @@ MOTION = {"at rest": "", "that move": "fix m wall move linear 0.1 0.0 0.0"}
 
 def dam(way, motion, ranks, folder):
     folder.mkdir()
-    done = mpirun(ranks, DAM.format(pair=pair(way, "wendland 1.3 viscosity 0.1 central"), motion=MOTION[motion]), folder)
+    done = mpirun(ranks, DAM.format(pair=pair(way, "wendland 1.3 viscosity 0.1 central"), motion=MOTION[motion]),
+                  folder)
     assert done.returncode == 0, done.stdout[-1500:] + done.stderr[-1500:]
     return read_dump(folder / "dump")
 
@@ -66,7 +70,8 @@ def dam(way, motion, ranks, folder):
 @pytest.mark.ranks(2)
 @pytest.mark.parametrize("motion", sorted(MOTION))
 def test_sums_at_walls_have_room_on_two_ranks(motion, tmp_path):
-    """A sum at a wall has 8 columns, with walls that move 17, of each ghost; the atom style would have LAMMPS make room for 5."""
+    """A sum at a wall has 8 columns, with walls that move 17, of each ghost; the atom style would have LAMMPS make room
+    for 5."""
     alone = dam("alone", motion, 1, tmp_path / "alone")
     for k, way in enumerate(BELOW):
         below = dam(way, motion, 2, tmp_path / str(k))
@@ -96,12 +101,14 @@ fix i all nve/sph
 compute w all pressure NULL virial
 compute s all stress/atom NULL pair
 compute sum all reduce sum c_s[1] c_s[2] c_s[3] c_s[4] c_s[5] c_s[6]
-thermo_style custom step c_w c_w[1] c_w[2] c_w[3] c_w[4] c_w[5] c_w[6] c_sum[1] c_sum[2] c_sum[3] c_sum[4] c_sum[5] c_sum[6]
+thermo_style custom step c_w c_w[1] c_w[2] c_w[3] c_w[4] c_w[5] c_w[6] &
+  c_sum[1] c_sum[2] c_sum[3] c_sum[4] c_sum[5] c_sum[6]
 timestep 0.001
 run 2
 """
 SCHEMES = {"plain": ("viscosity 0.1 central", ""), "delta": ("viscosity 0.1 central", "delta 0.1"),
-           "shift": ("viscosity 0.1 central shift yes", "delta 0.1"), "correction": ("viscosity 0.1 central correction yes", "delta 0.1")}
+           "shift": ("viscosity 0.1 central shift yes", "delta 0.1"),
+           "correction": ("viscosity 0.1 central correction yes", "delta 0.1")}
 
 
 def pressures(way, scheme):
@@ -112,7 +119,8 @@ def pressures(way, scheme):
         run(lmp, SEA.format(pair=pair(way, "wendland 1.3 " + words, coeff), delta=delta))
         pointer, stress = lmp.extract_compute("w", 0, 1), lmp.extract_compute("sum", 0, 1)
         volume = 7.0**3
-        return np.array([lmp.extract_compute("w", 0, 0)] + [pointer[k] for k in range(6)]), np.array([-stress[k] / volume for k in range(6)])
+        return np.array([lmp.extract_compute("w", 0, 0)] + [pointer[k] for k in range(6)]), np.array(
+            [-stress[k] / volume for k in range(6)])
     finally:
         lmp.close()
 

@@ -1,5 +1,5 @@
-"""Open ends: a plug flow passes through as a lattice, mass that came in and went out is what the box has more, hydrostatic ends leave water
-at rest, and neither ranks nor restarts matter."""
+"""Open ends: a plug flow passes through as a lattice, mass that came in and went out is what the box has more,
+hydrostatic ends leave water at rest, and neither ranks nor restarts matter."""
 import numpy as np
 import pytest
 
@@ -30,7 +30,8 @@ fix move all nve/sph
 timestep 0.005
 thermo_modify lost error
 """
-OPEN = "fix in all sph/inlet xlo 0 0.7 velocity {}\nfix out all sph/outlet xhi 1 0.7 pressure 0\nfix flat all enforce2d\n"
+OPEN = ("fix in all sph/inlet xlo 0 0.7 velocity {}\nfix out all sph/outlet xhi 1 0.7 pressure 0\n"
+        "fix flat all enforce2d\n")
 
 
 def test_plug_flow_passes_through_as_a_lattice():
@@ -53,9 +54,11 @@ def test_plug_flow_passes_through_as_a_lattice():
 def test_no_mass_is_made_where_the_flow_turns_back():
     """A flow that goes back and forth across the inlet's plane: who has been replaced is not replaced again."""
     lmp = start()
-    room = PIPE.replace("block -0.7 1.7", "block -0.9 1.9").replace("create_atoms 1 box", "region full block -0.7 1.7 INF INF INF INF units box\n"
+    room = PIPE.replace("block -0.7 1.7", "block -0.9 1.9").replace("create_atoms 1 box", "region full block -0.7 1.7 "
+                                                                     "INF INF INF INF units box\n"
                                                                      "create_atoms 1 region full")
-    run(lmp, room + "variable u equal 0.5*cos(2*PI*step*dt/0.8)+0.1\nset group all vx 0.6\n" + OPEN.format("v_u") + "run 640 post no")
+    run(lmp, room + "variable u equal 0.5*cos(2*PI*step*dt/0.8)+0.1\nset group all vx 0.6\n" + OPEN.format("v_u") +
+        "run 640 post no")
     x = by_id(lmp, "x", 3)[:, 0]
     assert len(x) <= 144 and ((x > 0) & (x < 1)).sum() <= 60
     assert lmp.extract_fix("in", 0, 0) <= 0.01 * 6 * (0.1 * 3.2 / 0.1 + 2)
@@ -99,7 +102,8 @@ timestep 0.005
 
 
 def test_a_river_keeps_its_depth_and_its_speed():
-    """Water with a free surface that glides over a floor without friction, hydrostatic at both ends: one length of the flow."""
+    """Water with a free surface that glides over a floor without friction, hydrostatic at both ends: one length of the
+    flow."""
     lmp = start()
     run(lmp, STILL + "run 400 post no")
     x, v, kind, P = by_id(lmp, "x", 3), by_id(lmp, "v", 3), by_id(lmp, "type"), fix_by_id(lmp, "eos")
@@ -123,7 +127,8 @@ def test_open_ends_on_any_number_of_ranks_and_over_restarts(tmp_path):
         return rows[np.lexsort((rows[:, 1].round(7), rows[:, 0].round(7)))]
     first = go("one", 1, scene + dump % ("one", 200))
     assert np.abs(go("three", at_most(3), scene + dump % ("three", 200)) - first).max() <= 1e-12 * np.abs(first).max()
-    done = mpirun(1, scene + "run 123\nwrite_restart half\nrun 10\nvariable a equal f_in\nprint \"in $(v_a:%.17g)\"\n", tmp_path)
+    done = mpirun(1, scene + "run 123\nwrite_restart half\nrun 10\nvariable a equal f_in\nprint \"in $(v_a:%.17g)\"\n",
+                  tmp_path)
     assert done.returncode == 0, done.stdout
     fixes = "\n".join(line for line in scene.splitlines() if line.startswith(("fix", "neigh", "timestep", "variable")))
     again = go("again", 2, "atom_modify map array\nread_restart half\n" + fixes + "\n" + dump % ("again", 77))
@@ -137,7 +142,8 @@ def test_what_drives_a_flow_asks_nothing_of_ranks_and_restarts(drive, tmp_path):
     ends = []
     fixes = "\n".join(line for line in scene.splitlines() if line.startswith(("fix", "neigh", "timestep")))
     for name, ranks, text in (("one", 1, scene + "run 200"), ("two", 2, scene + "run 200"),
-                              ("restart", 1, scene + "run 123\nwrite_restart half\nclear\nplugin load stokesdynplugin.so\natom_modify map array\n"
+                              ("restart", 1, scene + "run 123\nwrite_restart half\nclear\n"
+                               "plugin load stokesdynplugin.so\natom_modify map array\n"
                                "read_restart half\n" + fixes + "\nrun 77")):
         folder = tmp_path / name
         folder.mkdir()
@@ -151,12 +157,14 @@ def test_what_drives_a_flow_asks_nothing_of_ranks_and_restarts(drive, tmp_path):
 
 @pytest.mark.parametrize("speed", ["equal 0.8+0.3*sin(step*0.07)", "atom 0.8+0.3*sin(step*0.07)*sin(2*PI*y/0.6)"])
 def test_a_speed_that_changes_in_time_asks_nothing_of_lists_and_runs(speed):
-    """New particles are made when there is a new list: with a skin of a third of a spacing ten steps later than with a small one, at the same places.
-    And a run in pieces is the run in one."""
+    """New particles are made when there is a new list: with a skin of a third of a spacing ten steps later than with a
+    small one, at the same places. And a run in pieces is the run in one."""
     rows = []
-    for skin, runs in (("0.004", "run 200 post no"), ("0.06", "run 200 post no"), ("0.03", "run 77 post no\nrun 123 post no")):
+    for skin, runs in (("0.004", "run 200 post no"), ("0.06", "run 200 post no"),
+                       ("0.03", "run 77 post no\nrun 123 post no")):
         lmp = start()
-        run(lmp, PIPE.replace("neighbor 0.03", "neighbor " + skin).replace("viscosity 0.05", "artVisc 0.2 0 4e-4 viscosity 0.05") + "variable u %s\n" % speed +
+        run(lmp, PIPE.replace("neighbor 0.03", "neighbor " + skin).replace(
+            "viscosity 0.05", "artVisc 0.2 0 4e-4 viscosity 0.05") + "variable u %s\n" % speed +
             OPEN.format("v_u") + runs)
         x, v = by_id(lmp, "x", 3), by_id(lmp, "v", 3)
         inside = (x[:, 0] > -0.5) & (x[:, 0] < 1)
@@ -180,7 +188,8 @@ def end_of(scene, steps):
 
 
 def test_a_discharge_is_the_speed_that_brings_it():
-    """0.48 through a width of 0.6 is the speed 0.8. The mass that comes in is the discharge times the time, but for a column."""
+    """0.48 through a width of 0.6 is the speed 0.8. The mass that comes in is the discharge times the time, but for a
+    column."""
     scene = PIPE.replace("all vx 1", "all vx 0.8")
     rows, mass = end_of(scene + OPEN.replace("velocity {}", "flow_rate 0.48"), 300)
     assert np.abs(rows - end_of(scene + OPEN.format(0.8), 300)[0]).max() < 1e-9
@@ -198,8 +207,10 @@ def test_a_hydrograph_is_the_variable_that_it_describes(tmp_path):
     assert given[:, 3].mean() == pytest.approx((0.72 - 0.18 * 0.3 / 0.5) / 0.6, rel=0.03)    # sound is on its way
 
 
-@pytest.mark.parametrize("rows, words", [("", "no rows of a time and a discharge"), ("0 1\n1 2 3\n", "row 2 must have two numbers"),
-                                         ("0 1\n0 2\n", "the time 0 does not lie after 0"), ("0 x\n", "line 1: 'x' is not a finite number")])
+@pytest.mark.parametrize("rows, words", [("", "no rows of a time and a discharge"),
+                                         ("0 1\n1 2 3\n", "row 2 must have two numbers"),
+                                         ("0 1\n0 2\n", "the time 0 does not lie after 0"),
+                                         ("0 x\n", "line 1: 'x' is not a finite number")])
 def test_what_is_no_hydrograph(rows, words, tmp_path):
     path = tmp_path / "flood.txt"
     path.write_text(rows)
@@ -214,7 +225,8 @@ def test_a_hydrograph_goes_on_over_a_restart(tmp_path):
     fixes = "\n".join(line for line in scene.splitlines() if line.startswith(("fix", "neigh", "timestep")))
     text = scene
     for part in ("one", "two"):
-        text += (f"run 67\nwrite_restart {tmp_path}/{part}\nclear\nplugin load stokesdynplugin.so\natom_modify map array\n"
+        text += (f"run 67\nwrite_restart {tmp_path}/{part}\nclear\nplugin load stokesdynplugin.so\n"
+                 "atom_modify map array\n"
                  f"read_restart {tmp_path}/{part}\n{fixes}\n")
     assert np.abs(end_of(text, 66)[0] - end_of(scene, 200)[0]).max() < 1e-11
 
@@ -230,8 +242,8 @@ def test_a_run_may_end_while_particles_stand_beyond_the_end_of_the_box(steps):
 
 
 def test_a_pressure_drives_fluid_in():
-    """Without walls nothing holds it: the difference of both pressures over the length is what accelerates it. The layers follow and weigh nothing.
-    Each of the two pressures acts a spacing behind its plane: du/dt = 0.3/1.2."""
+    """Without walls nothing holds it: the difference of both pressures over the length is what accelerates it. The
+    layers follow and weigh nothing. Each of the two pressures acts a spacing behind its plane: du/dt = 0.3/1.2."""
     rows, mass = end_of(PIPE.replace("all vx 1", "all vx 0.5") + OPEN.replace("velocity {}", "pressure 0.3"), 300)
     flow = rows[(rows[:, 0] > 0.1) & (rows[:, 0] < 0.9)]
     assert flow[:, 3].mean() == pytest.approx(0.5 + 0.25 * 1.5, rel=0.01)
@@ -241,15 +253,20 @@ def test_a_pressure_drives_fluid_in():
 
 def test_flow_that_turns_back_is_stopped_and_said_once(tmp_path):
     """A pressure that drives it out again: it stands at the inlet."""
-    done = mpirun(1, PIPE.replace("all vx 1", "all vx 0.2") + OPEN.replace("velocity {}", "pressure -0.4") + "run 300", tmp_path)
+    done = mpirun(1, PIPE.replace("all vx 1", "all vx 0.2") + OPEN.replace("velocity {}", "pressure -0.4") + "run 300",
+                  tmp_path)
     assert done.returncode == 0, done.stdout
-    assert (done.stdout + done.stderr).count("the flow turns back at this inlet, which lets nothing out and holds it there") == 1
-    assert (done.stdout + done.stderr).count("the flow turns back at this outlet, which has no fluid to give and holds it there") == 1
+    assert (done.stdout + done.stderr).count("the flow turns back at this inlet, which lets nothing out and "
+                                             "holds it there") == 1
+    assert (done.stdout + done.stderr).count("the flow turns back at this outlet, which has no fluid to give and "
+                                             "holds it there") == 1
 
 
 def test_an_inlet_goes_on_without_particles_that_lammps_has_lost():
-    """A drop flies out of a box with boundary f, which `thermo_modify lost ignore` allows: the jet below it goes on as without the drop."""
-    jet = PIPE.replace("boundary f p p", "boundary f f p").replace("1.7 0 0.6", "1.7 -0.1 0.9").replace("lost error", "lost ignore").replace(
+    """A drop flies out of a box with boundary f, which `thermo_modify lost ignore` allows: the jet below it goes on as
+    without the drop."""
+    jet = PIPE.replace("boundary f p p", "boundary f f p").replace("1.7 0 0.6", "1.7 -0.1 0.9")
+    jet = jet.replace("lost error", "lost ignore").replace(
         "create_atoms 1 box", "region jet block -0.7 1.7 0 0.6 -0.05 0.05 units box\ncreate_atoms 1 region jet")
     counts = []
     for drop in ("", "create_atoms 1 single 0.5 0.75 0 units box\nset atom 145 sph/rho 1 vy 2\n"):
@@ -262,7 +279,8 @@ def test_an_inlet_goes_on_without_particles_that_lammps_has_lost():
 
 def test_new_particles_have_the_size_of_those_that_they_replace():
     lmp = start()
-    run(lmp, PIPE.replace("atom_style sph", "atom_style hybrid sph sphere").replace("mass 1 0.01", "set type 1 diameter 0.08\nset type 1 mass 0.01")
+    run(lmp, PIPE.replace("atom_style sph", "atom_style hybrid sph sphere").replace(
+        "mass 1 0.01", "set type 1 diameter 0.08\nset type 1 mass 0.01")
         .replace("pair_coeff * * c 10", "pair_coeff * * c 10 deltap 0.1") + OPEN.format(1) + "run 100 post no")
     assert lmp.extract_fix("in", 0, 0) > 0.1
     assert np.ptp(by_id(lmp, "radius")) == 0 and np.ptp(by_id(lmp, "rmass")) == 0
@@ -281,7 +299,8 @@ def test_new_particles_have_the_size_of_those_that_they_replace():
     (("xhi 1 0.7", "xhi -3 0.7"), "POSITION -3 is outside of the box"),
     (("xlo 0 0.7", "xlo 0 0.5"), "the width 0.5 of the layer is too small"),
     (("xlo 0 0.7", "ylo 0.3 0.3"), "the box must have boundary f beyond the layer, along y"),
-    (("fix move all nve/sph", "group some id 1:100\nfix move some nve/sph"), "of its group is not moved by fix nve/sph"),
+    (("fix move all nve/sph", "group some id 1:100\nfix move some nve/sph"),
+     "of its group is not moved by fix nve/sph"),
     (("pressure 0", "pressure -20"), "the pressure -20 that is asked of it is not above -14.2857"),
     (("velocity 1", "velocity v_no"), "variable 'no' does not exist"),
 ])
@@ -292,7 +311,8 @@ def test_bad_input(change, words):
 
 
 def test_an_empty_layer_is_an_error():
-    assert "its layer is empty" in message(PIPE + "region b block -1 0 INF INF INF INF units box\ndelete_atoms region b\n" + OPEN.format(1) + "run 1")
+    assert "its layer is empty" in message(PIPE + "region b block -1 0 INF INF INF INF units box\n"
+                                                  "delete_atoms region b\n" + OPEN.format(1) + "run 1")
 
 
 @pytest.mark.parametrize("change", [("xlo 0 0.7", "xlo 1.6 0.7"), ("xhi 1 0.7", "xhi -0.6 0.7")])
@@ -300,8 +320,10 @@ def test_a_layer_with_all_of_the_flow_behind_it_is_an_error(change):
     """Nobody comes in or goes out at a layer on the other side of the fluid."""
     part = "INF 0.1" if change[0].startswith("xhi") else "0.8 INF"
     gone = f"region b block {part} INF INF INF INF units box\ndelete_atoms region b\n"
-    text = message(PIPE + gone + "\n".join(line for line in OPEN.format(1).replace(*change).splitlines() if change[1] in line or "flat" in line) + "\nrun 1")
-    assert "all particles of its group stand behind the layer" in text and f"FACE {change[1][:3]} is the end of the flow" in text
+    text = message(PIPE + gone + "\n".join(line for line in OPEN.format(1).replace(*change).splitlines()
+                                           if change[1] in line or "flat" in line) + "\nrun 1")
+    assert ("all particles of its group stand behind the layer" in text and
+            f"FACE {change[1][:3]} is the end of the flow" in text)
 
 
 def test_new_particles_find_no_atom_id():

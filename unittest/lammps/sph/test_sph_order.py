@@ -1,5 +1,5 @@
-"""Shift, correction, central viscosity and two fluids: forces and rates of one instant against an evaluation in numpy; runs in pieces
-and over restart files; what each refuses."""
+"""Shift, correction, central viscosity and two fluids: forces and rates of one instant against an evaluation in numpy;
+runs in pieces and over restart files; what each refuses."""
 import numpy as np
 import pytest
 
@@ -11,7 +11,8 @@ M2, H2, C2, MU2 = [0.1, 0.13], [0.02, 0.021], [20.0, 25.0], [0.4, 0.9]
 
 
 class Scene:
-    """A periodic box of two types, jittered, with random velocities and densities; hole: particles are missing in its middle, 5 or 19."""
+    """A periodic box of two types, jittered, with random velocities and densities; hole: particles are missing in its
+    middle, 5 or 19."""
 
     def __init__(self, dim, path, hole=False):
         self.dim, self.n, self.dx = dim, {2: 11, 3: 9}[dim], 0.01    # wider than two supports: no pair twice
@@ -31,14 +32,17 @@ class Scene:
         self.m = np.where(self.types == 1, *M2) * (1.0 if dim == 2 else self.dx)
 
     def commands(self, pair, newton="on", density="delta 0.1", eos="fix eos all sph/pressure Tait 60000 1000 7 300"):
-        lines = ["units si", "newton " + newton, "dimension %d" % self.dim, "atom_style sph", "atom_modify map array", "boundary p p p",
-                 "read_data %s" % self.path, "group one type 1", "group two type 2"]
+        lines = ["units si", "newton " + newton, "dimension %d" % self.dim, "atom_style sph", "atom_modify map array",
+                 "boundary p p p", "read_data %s" % self.path, "group one type 1", "group two type 2"]
         scale = 1.0 if self.dim == 2 else self.dx
         lines += ["mass %d %.17g" % (k + 1, M2[k] * scale) for k in (0, 1)]
-        lines += ["neighbor 0.001 bin", "neigh_modify delay 0 every 1", "timestep 1e-5", "pair_style sph/artVisc/tensCorr " + pair]
+        lines += ["neighbor 0.001 bin", "neigh_modify delay 0 every 1", "timestep 1e-5",
+                  "pair_style sph/artVisc/tensCorr " + pair]
         for k in (0, 1):
-            lines.append("pair_coeff %d %d h %.17g c %.17g%s%s" % (k + 1, k + 1, H2[k], C2[k], " mu %.17g" % MU2[k] if "viscosity" in pair else "",
-                                                                   " deltap %.17g" % self.dx if "yes" in pair or "pliant" in pair else ""))
+            lines.append("pair_coeff %d %d h %.17g c %.17g%s%s" % (k + 1, k + 1, H2[k], C2[k],
+                                                                   " mu %.17g" % MU2[k] if "viscosity" in pair else "",
+                                                                   " deltap %.17g" % self.dx if "yes" in pair or
+                                                                   "pliant" in pair else ""))
         return "\n".join(lines + [eos, "fix density all sph/density/continuity " + density, "fix move all nve/sph", ""])
 
     def pairs(self, kernel):
@@ -54,8 +58,8 @@ class Scene:
 
 
 def law(s, kernel, scheme, mu, P, full):
-    """Forces, and rates without diffusion, straight from sph-order's formulas. scheme: shift, correction, volume or None. P: what acts.
-    full: there is no surface, at which shift would end."""
+    """Forces, and rates without diffusion, straight from sph-order's formulas. scheme: shift, correction, volume or
+    None. P: what acts. full: there is no surface, at which shift would end."""
     d, r, g, f, h, mu_ab = s.pairs(kernel)
     V, rho = s.m / s.rho, s.rho
     u = s.v[:, None, :] - s.v[None, :, :]
@@ -95,7 +99,8 @@ def law(s, kernel, scheme, mu, P, full):
         assert np.abs(B[~cut] - np.eye(D)).max() > 0.01
         inner = np.where(cut[:, None, None], np.eye(D), B)
         F = np.zeros_like(F)
-        F[:, :D] = -np.einsum("ab,a,aij,abj->ai", mm * g, A, inner, dD) - np.einsum("ab,b,bij,abj->ai", mm * g, A, inner, dD)
+        F[:, :D] = -np.einsum("ab,a,aij,abj->ai", mm * g, A, inner,
+                              dD) - np.einsum("ab,b,bij,abj->ai", mm * g, A, inner, dD)
         rate = np.where(cut, rate, -rho * np.einsum("aij,aji->a", G, B))
     if scheme in ("shift", "pliant", "volume shift"):
         out = (rho[:, None] * (du[:, None, :] * dD).sum(-1))[..., None] * s.v[:, None, :]
@@ -114,10 +119,11 @@ def close(value, expected, limit=1e-12):
     assert np.abs(value - expected).max() <= limit * np.abs(expected).max()
 
 
-CASES = [("wendland", "shift", "", 300), ("wendland", "shift", "central", 0), ("wendland", "pliant", "central", 0), ("wendland", "pliant", "", 300),
-         ("wendland", "correction", "", 0), ("cubicspline", "correction", "laplacian", 300), ("wendland", "correction", "central", 300),
-         ("cubicspline", None, "central", 300), ("wendland", "volume", "laplacian", 300), ("wendland", "volume shift", "central", 300),
-         ("cubicspline", "volume correction", "central", 300)]
+CASES = [("wendland", "shift", "", 300), ("wendland", "shift", "central", 0), ("wendland", "pliant", "central", 0),
+         ("wendland", "pliant", "", 300), ("wendland", "correction", "", 0),
+         ("cubicspline", "correction", "laplacian", 300), ("wendland", "correction", "central", 300),
+         ("cubicspline", None, "central", 300), ("wendland", "volume", "laplacian", 300),
+         ("wendland", "volume shift", "central", 300), ("cubicspline", "volume correction", "central", 300)]
 
 
 MOVES = "shift", "pliant", "correction", "volume shift", "volume correction"
@@ -127,11 +133,13 @@ MOVES = "shift", "pliant", "correction", "volume shift", "volume correction"
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("newton", ["on", "off"])
 def test_forces_and_rates_are_the_formulas(kernel, scheme, mu, P0, dim, newton, tmp_path):
-    """Diffusion has its own test (test_sph_static), and is taken out here by its smallness: delta 1e-30. Where particles are shifted
-    P - P0 acts, and P0 > 0 says that the vessel is full, as it always is with correction."""
+    """Diffusion has its own test (test_sph_static), and is taken out here by its smallness: delta 1e-30. Where
+    particles are shifted P - P0 acts, and P0 > 0 says that the vessel is full, as it always is with correction."""
     s = Scene(dim, tmp_path / "scene.data", hole=True)
-    pair = kernel + " 0.02" + (" viscosity 1 " + mu if mu else "") + (" shift pliant" if scheme == "pliant" else " %s yes" % scheme.split()[-1] if scheme in MOVES else "")
-    eos, acts = "fix eos all sph/pressure Tait 60000 1000 7 %g" % P0, 60000 * ((s.rho / 1000) ** 7 - 1) + (0 if scheme in MOVES else P0)
+    pair = (kernel + " 0.02" + (" viscosity 1 " + mu if mu else "") +
+            (" shift pliant" if scheme == "pliant" else " %s yes" % scheme.split()[-1] if scheme in MOVES else ""))
+    eos, acts = "fix eos all sph/pressure Tait 60000 1000 7 %g" % P0, 60000 * ((s.rho / 1000) ** 7 - 1) + (
+        0 if scheme in MOVES else P0)
     full = scheme == "correction" or scheme == "volume correction" or (P0 > 0 and scheme in ("shift", "pliant"))
     density = "delta 1e-30" if scheme in MOVES else ""
     if scheme and scheme.startswith("volume"):
@@ -147,12 +155,15 @@ def test_forces_and_rates_are_the_formulas(kernel, scheme, mu, P0, dim, newton, 
 
 
 def test_virial_of_the_corrected_force(tmp_path):
-    """Half of d (F_ab - F_ba) of each pair, which does not depend on where the origin is; the sum over atoms is the same."""
+    """Half of d (F_ab - F_ba) of each pair, which does not depend on where the origin is; the sum over atoms is the
+    same."""
     s = Scene(2, tmp_path / "scene.data")
     lmp = start()
     try:
-        run(lmp, s.commands("wendland 0.02 correction yes") + "compute w all pressure NULL virial\ncompute a all stress/atom NULL virial\n"
-            "compute s all reduce sum c_a[1] c_a[2] c_a[4]\nthermo_style custom step c_w[1] c_w[2] c_w[4] c_s[1]\nrun 0")
+        run(lmp, s.commands("wendland 0.02 correction yes") + "compute w all pressure NULL virial\n"
+            "compute a all stress/atom NULL virial\n"
+            "compute s all reduce sum c_a[1] c_a[2] c_a[4]\nthermo_style custom step c_w[1] c_w[2] c_w[4] c_s[1]\n"
+                                                              "run 0")
         d, r, g, f, h, _ = s.pairs("wendland")
         V, P = s.m / s.rho, 60000 * ((s.rho / 1000) ** 7 - 1) + 300
         B = np.linalg.inv(-np.einsum("b,ab,abi,abj->aij", V, g, d[..., :2], d[..., :2]))
@@ -166,9 +177,10 @@ def test_virial_of_the_corrected_force(tmp_path):
         lmp.close()
 
 
-# --- a run in pieces -------------------------------------------------------------------------------------------------------
+# --- a run in pieces --------------------------------------------------------------------------------------------------
 
-PAIRS = {"shift": "wendland 0.02 viscosity 1 central shift yes", "pliant": "wendland 0.02 viscosity 1 central shift pliant",
+PAIRS = {"shift": "wendland 0.02 viscosity 1 central shift yes",
+         "pliant": "wendland 0.02 viscosity 1 central shift pliant",
          "correction": "cubicspline 0.02 viscosity 1 correction yes"}
 
 
@@ -187,11 +199,13 @@ def test_a_broken_run_is_the_unbroken_one(option, tmp_path):
     s = Scene(2, tmp_path / "scene.data")
     first = s.commands(PAIRS[option])
     unbroken = trajectory(first + "run 60")
-    fixes = "\n".join(line for line in first.splitlines() if line.startswith("fix ") or line.startswith("neigh") or line.startswith("timestep"))
+    fixes = "\n".join(line for line in first.splitlines() if line.startswith("fix ") or line.startswith("neigh") or
+                      line.startswith("timestep"))
     path = tmp_path / "restart"
     trajectory(first + "run 20\nwrite_restart %s\nrun 7" % path)
     trajectory(first + "restart 20 %s\nrun 33" % (str(path) + ".mid"))
-    for parts in ([first + "run 17\nrun 0\nrun 43"], ["atom_modify map array\nread_restart %s\n" % path + fixes + "\nrun 40"],
+    for parts in ([first + "run 17\nrun 0\nrun 43"],
+                  ["atom_modify map array\nread_restart %s\n" % path + fixes + "\nrun 40"],
                   ["atom_modify map array\nread_restart %s.mid.20\n" % path + fixes + "\nrun 40"]):
         for value, expected in zip(trajectory(*parts), unbroken):
             close(value, expected)
@@ -199,7 +213,8 @@ def test_a_broken_run_is_the_unbroken_one(option, tmp_path):
 
 @pytest.mark.parametrize("values", [5, 6])
 def test_restart_files_from_before_mu_and_rheology_are_read(values, tmp_path):
-    """Pairs had a flag and five values; since mu, the sixth, twice the number of values is added to the flag. Now there are ten."""
+    """Pairs had a flag and five values; since mu, the sixth, twice the number of values is added to the flag. Now there
+    are ten."""
     s = Scene(2, tmp_path / "scene.data")
     text = s.commands("wendland 0.02 viscosity 1")
     text = "\n".join(line.split(" mu ")[0] for line in text.splitlines()) + "\n"
@@ -212,28 +227,37 @@ def test_restart_files_from_before_mu_and_rheology_are_read(values, tmp_path):
     old = np.concatenate([rows[:, :1] % 2 + (12 if values == 6 else 0), rows[:, 1:1 + values]], axis=1).tobytes()
     path.write_bytes(data[:at] + old + data[at + 3 * 11 * 8:])
     fixes = "\n".join(line for line in text.splitlines() if line.startswith("fix ") or line.startswith("neigh"))
-    for value, wanted in zip(trajectory("atom_modify map array\nread_restart %s\n" % path + fixes + "\nrun 0"), expected):
+    for value, wanted in zip(trajectory("atom_modify map array\nread_restart %s\n" % path + fixes + "\nrun 0"),
+                             expected):
         close(value, wanted)
 
 
-# --- refusals --------------------------------------------------------------------------------------------------------------
+# --- refusals ---------------------------------------------------------------------------------------------------------
 
 SHIFT, CORRECT, DELTA = "wendland 0.02 shift yes", "wendland 0.02 correction yes", "delta 0.1"
 REFUSED = {
     "no delta": (SHIFT, "", "", "shift yes needs fix sph/density/continuity with delta"),
     "cubic spline": ("cubicspline 0.02 shift yes", DELTA, "", "shift yes needs kernel wendland"),
     "tensCorr": (SHIFT + " tensCorr 0.2 0.01", DELTA, "", "shift yes does not go with tensCorr"),
-    "summation": (SHIFT, DELTA, "unfix density\nfix density all sph/density/summation", "shift yes needs fix sph/density/continuity and fix nve/sph"),
-    "fix sph": (SHIFT, DELTA, "unfix move\nfix move all sph", "shift yes needs fix sph/density/continuity and fix nve/sph"),
-    "wall/sph": (CORRECT, DELTA, "fix w all wall/sph xplane -1 NULL 0.001 1", "correction yes does not go with fix wall/sph"),
-    "kernel of the plane": ("wendland2d 0.02 shift yes", DELTA, "", "shift yes needs the kernel of the box's dimension"),
+    "summation": (SHIFT, DELTA, "unfix density\nfix density all sph/density/summation",
+                  "shift yes needs fix sph/density/continuity and fix nve/sph"),
+    "fix sph": (SHIFT, DELTA, "unfix move\nfix move all sph",
+                "shift yes needs fix sph/density/continuity and fix nve/sph"),
+    "wall/sph": (CORRECT, DELTA, "fix w all wall/sph xplane -1 NULL 0.001 1",
+                 "correction yes does not go with fix wall/sph"),
+    "kernel of the plane": ("wendland2d 0.02 shift yes", DELTA, "",
+                            "shift yes needs the kernel of the box's dimension"),
     "two fluids and tensCorr": ("wendland 0.02 tensCorr 0.2 0.01", "volume yes", "", "does not go with tensCorr"),
-    "two fluids and fix sph": ("wendland 0.02", "volume yes", "unfix move\nfix move all sph", "volume yes of fix sph/density/continuity needs fix nve/sph"),
-    "sheared box": (SHIFT, DELTA, "change_box all triclinic\nfix d all deform 1 xy erate 0.1 remap v", "fix deform with remap v: the momentum that shift carries"),
+    "two fluids and fix sph": ("wendland 0.02", "volume yes", "unfix move\nfix move all sph",
+                               "volume yes of fix sph/density/continuity needs fix nve/sph"),
+    "sheared box": (SHIFT, DELTA, "change_box all triclinic\nfix d all deform 1 xy erate 0.1 remap v",
+                    "fix deform with remap v: the momentum that shift carries"),
     "correction off and on": ("wendland 0.02 shift no correction yes", DELTA, "", "correction yes switches shift on"),
     "shift maybe": ("wendland 0.02 shift maybe", DELTA, "", "keyword shift: 'maybe' is none of: no, yes"),
-    "mu without viscosity": ("wendland 0.02", DELTA, "pair_coeff 1 1 mu 3", "keyword mu: the pair_style has no viscosity"),
-    "free surface": (CORRECT, DELTA, "region r block 0 0.05 INF INF INF INF\ndelete_atoms region r", "is at a free surface"),
+    "mu without viscosity": ("wendland 0.02", DELTA, "pair_coeff 1 1 mu 3",
+                             "keyword mu: the pair_style has no viscosity"),
+    "free surface": (CORRECT, DELTA, "region r block 0 0.05 INF INF INF INF\ndelete_atoms region r",
+                     "is at a free surface"),
 }
 
 
@@ -254,7 +278,8 @@ def test_shift_needs_the_spacing_where_nothing_says_it(tmp_path):
     s = Scene(2, tmp_path / "scene.data")
     text = s.commands(SHIFT).replace(" deltap 0.01", "")
     assert message(text + "run 1") == "no error"
-    assert "shift needs the initial distance of particles" in message(text.replace("Tait 60000 1000 7 300", "absolut 7") + "run 1")
+    assert "shift needs the initial distance of particles" in message(text.replace("Tait 60000 1000 7 300",
+                                                                                   "absolut 7") + "run 1")
 
 
 STRETCH = """
@@ -286,8 +311,8 @@ run 300
 
 @pytest.mark.parametrize("disturbed", ["", "displace_atoms all random 0.0004 0.0004 0 7 units box"])
 def test_rows_that_a_flow_draws_apart_come_together_again(disturbed):
-    """Vortices draw the rows of a lattice apart, by symmetry without shift until the gap is wide. It would stay if shift ended at it as at a
-    surface."""
+    """Vortices draw the rows of a lattice apart, by symmetry without shift until the gap is wide. It would stay if
+    shift ended at it as at a surface."""
     assert message(STRETCH % disturbed) == "no error"
 
 
@@ -331,8 +356,9 @@ run 0
 @pytest.mark.parametrize("kernel", ["wendland 0.075", "cubicspline 0.065"])
 @pytest.mark.parametrize("volume", ["no", "yes"])
 def test_walls_bear_the_water_with_correction_too(kernel, volume):
-    """A full tank, a body in it, and a pressure of 3 at the lid: what all walls bear is the weight of the water, and the body has its buoyancy,
-    within 1 % of the forces of pressure on one side, 4 on the floor and 1.1 under the body."""
+    """A full tank, a body in it, and a pressure of 3 at the lid: what all walls bear is the weight of the water, and
+    the body has its buoyancy, within 1 % of the forces of pressure on one side, 4 on the floor and 1.1 under the
+    body."""
     lmp = start()
     run(lmp, FULL.format(kernel + " correction yes", volume))
     assert lmp.extract_fix("w", 0, 1, 1) == pytest.approx(-0.94, abs=0.04)
@@ -385,7 +411,8 @@ run 800 post no
 
 
 def test_shift_calms_two_fluids_too():
-    """A heavy fluid under a light one, ten to one, from a disordered lattice: less than two thirds of the kinetic energy is left."""
+    """A heavy fluid under a light one, ten to one, from a disordered lattice: less than two thirds of the kinetic
+    energy is left."""
     left = []
     for words in (dict(shift="", deltap=""), dict(shift="shift yes", deltap="deltap 0.05")):
         lmp = start()
@@ -397,10 +424,12 @@ def test_shift_calms_two_fluids_too():
 
 @pytest.mark.parametrize("ratio, light, refused", [(99, 10, False), (1000, 10, True), (1000, 31.7, False)])
 def test_a_fluid_that_is_too_soft_for_the_other_is_refused_with_correction(ratio, light, refused):
-    scene = TWO_FLUIDS.format(shift="correction yes", deltap="deltap 0.05").replace("$(1000/7) 10 7", f"$({ratio}*100/7) {ratio} 7")
+    scene = TWO_FLUIDS.format(shift="correction yes",
+                              deltap="deltap 0.05").replace("$(1000/7) 10 7", f"$({ratio}*100/7) {ratio} 7")
     scene = scene.replace("$(100/7) 1 7", f"$({light}^2/7) 1 7").replace("rho 10", f"rho {ratio}")
     for kind in "13":
         scene = scene.replace(f"mass {kind} 0.025", f"mass {kind} {ratio * 0.0025}")
     got = message(scene.replace("run 800 post no", "run 0 post no"))
-    assert ("the fluid of fix q is 1000 times softer than that of fix p" in got and "a speed of sound of 31.6" in got) == refused, got
+    assert ("the fluid of fix q is 1000 times softer than that of fix p" in got and
+            "a speed of sound of 31.6" in got) == refused, got
     assert refused or got == "no error"

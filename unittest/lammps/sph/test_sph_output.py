@@ -43,11 +43,13 @@ compute P all sph/probe pressure 0.5 0.5 0 pressure 0 0.3 0 height y 0.5 0 0 hei
 compute S water sph/surface/atom
 compute top water reduce sum c_S[2]
 variable balance equal c_E+c_E[4]-c_E[6]
-thermo_style custom step c_E c_E[1] c_E[2] c_E[3] c_E[4] c_E[5] c_E[6] c_E[7] v_balance c_P[1] c_P[2] c_P[3] c_P[4] c_top
+thermo_style custom step c_E c_E[1] c_E[2] c_E[3] c_E[4] c_E[5] c_E[6] c_E[7] v_balance &
+  c_P[1] c_P[2] c_P[3] c_P[4] c_top
 thermo_modify norm no format float %.17g
 timestep 0.0025
 """
-SHIFT = dict(pair="pair_style sph/artVisc/tensCorr wendland 0.2 artVisc 0.02 0 4e-4 viscosity 1e-3 central shift yes\npair_coeff * * c 20",
+SHIFT = dict(pair="pair_style sph/artVisc/tensCorr wendland 0.2 artVisc 0.02 0 4e-4 viscosity 1e-3 central shift yes\n"
+                  "pair_coeff * * c 20",
              density="delta 0.1")
 PLAIN = dict(pair="pair_style sph/artVisc/tensCorr wendland 0.2 artVisc 0.02 0 4e-4\npair_coeff * * c 20", density="")
 
@@ -57,7 +59,8 @@ def energy(lmp):
     return np.array(lmp.numpy.extract_compute("E", 0, 1))[:7]
 
 
-@pytest.mark.parametrize("scheme, tension", [(SHIFT, "yes"), (PLAIN, "yes"), (SHIFT, "no")], ids=["shift", "plain", "no_tension"])
+@pytest.mark.parametrize("scheme, tension", [(SHIFT, "yes"), (PLAIN, "yes"), (SHIFT, "no")],
+                         ids=["shift", "plain", "no_tension"])
 def test_the_balance_of_a_dam_break_closes(scheme, tension):
     """Past the impact on the far wall, to 1e-4 of the energy of the start."""
     lmp = start()
@@ -98,9 +101,11 @@ variable w atom 0.3*sin(2*PI*x)
 
 @pytest.mark.parametrize("mu", ["laplacian", "central"])
 def test_friction_alone_dissipates_in_the_plain_scheme(mu):
-    """Rate and force of the pressure take nothing from each other: without delta and shift all that is lost is the work of friction."""
+    """Rate and force of the pressure take nothing from each other: without delta and shift all that is lost is the work
+    of friction."""
     lmp = start()
-    run(lmp, PERIODIC.format(pair="viscosity 0.02 " + mu, density="", background="") + "velocity all set v_u v_w 0\nrun 400 post no")
+    run(lmp, PERIODIC.format(pair="viscosity 0.02 " + mu, density="", background="") + "velocity all set v_u v_w 0\n"
+        "run 400 post no")
     kinetic, _, elastic, dissipated, friction, work, _ = energy(lmp)
     assert friction > 0.02 and work == 0
     assert dissipated == pytest.approx(friction, rel=2e-3)
@@ -111,7 +116,8 @@ def test_friction_alone_dissipates_in_the_plain_scheme(mu):
 @pytest.mark.parametrize("density, rises", [("", False), ("delta 0.1", True)])
 def test_a_sound_wave_loses_energy_to_diffusion_alone(density, rises):
     lmp = start()
-    run(lmp, PERIODIC.format(pair="", density=density, background="1") + "variable s atom 0.1*sin(2*PI*x)\nvelocity all set v_s 0 0\nrun 0")
+    run(lmp, PERIODIC.format(pair="", density=density, background="1") + "variable s atom 0.1*sin(2*PI*x)\n"
+        "velocity all set v_s 0 0\nrun 0")
     start_energy = energy(lmp)[0]
     run(lmp, "run 400 post no")
     kinetic, _, elastic, dissipated, friction, _, _ = energy(lmp)
@@ -122,11 +128,13 @@ def test_a_sound_wave_loses_energy_to_diffusion_alone(density, rises):
 
 
 def test_with_shift_no_energy_belongs_to_a_background_pressure():
-    """Its force is P - P0, and the elastic energy is that of it: 1/4 of the kinetic energy would belong to P0 = 3 otherwise."""
+    """Its force is P - P0, and the elastic energy is that of it: 1/4 of the kinetic energy would belong to P0 = 3
+    otherwise."""
     found = []
     for background in ("", "3"):
         lmp = start()
-        run(lmp, PERIODIC.format(pair="shift yes", density="delta 0.1", background=background) + "velocity all set v_u v_w 0\nrun 50 post no")
+        run(lmp, PERIODIC.format(pair="shift yes", density="delta 0.1", background=background) +
+            "velocity all set v_u v_w 0\nrun 50 post no")
         found.append(energy(lmp)[:5])
         lmp.close()
     assert found[0][2] > 1e-5
@@ -141,7 +149,8 @@ FREE = {    # region, velocities, kinetic energy
 
 @pytest.mark.parametrize("case", FREE)
 def test_the_balance_of_free_surfaces_closes(case):
-    """Two blocks of fluid that meet head on, and a drop that is drawn out, without viscosity: diffusion and shift take what they lose."""
+    """Two blocks of fluid that meet head on, and a drop that is drawn out, without viscosity: diffusion and shift take
+    what they lose."""
     region, u, w, start_energy = FREE[case]
     text = BEGIN + """
     boundary f f p
@@ -215,8 +224,9 @@ timestep 0.0025
 
 
 def test_the_balance_of_a_jet_on_a_plate_closes():
-    """A jet comes in, meets a plate and leaves at both of its ends, to 1e-3 of the energy at the start. Before it meets the plate, nothing
-    happens but that particles come in with v^2 / 2 each; later it brings more than it takes along, what is dissipated."""
+    """A jet comes in, meets a plate and leaves at both of its ends, to 1e-3 of the energy at the start. Before it meets
+    the plate, nothing happens but that particles come in with v^2 / 2 each; later it brings more than it takes along,
+    what is dissipated."""
     lmp = start()
     run(lmp, JET + "run 0 post no")
     first = lmp.extract_variable("balance", None, 0)
@@ -235,8 +245,10 @@ def test_the_balance_of_a_jet_on_a_plate_closes():
 
 def test_energy_asks_nothing_of_the_order_of_the_input():
     """The compute before the open ends and after them, in a jet whose layers change their velocities."""
-    text = JET.replace("block -1.4", "block -0.4").replace("yhi 1 0.4", "yhi 0.6 0.4").replace("ylo -1 0.4", "ylo -0.6 0.4")
-    text = text.replace("velocity 1", "velocity v_u").replace("fix plate", "variable u equal 1+0.1*sin(0.05*step)\nfix plate")
+    text = JET.replace("block -1.4", "block -0.4").replace("yhi 1 0.4",
+                                                           "yhi 0.6 0.4").replace("ylo -1 0.4", "ylo -0.6 0.4")
+    text = text.replace("velocity 1", "velocity v_u").replace("fix plate",
+                                                              "variable u equal 1+0.1*sin(0.05*step)\nfix plate")
     compute = "compute E water sph/energy\n"
     seen = []
     for scene in (text, text.replace(compute, "").replace("fix plate", compute + "fix plate")):
@@ -255,12 +267,14 @@ def test_energy_that_comes_and_goes_on_any_number_of_ranks_and_over_restarts(tmp
         done = mpirun(ranks, text, tmp_path)
         assert done.returncode == 0, done.stdout + done.stderr
         return np.array([float(w) for w in done.stdout.split("\nout ")[-1].split("\n")[0].split()])
-    short = JET.replace("block -1.4", "block -0.4").replace("yhi 1 0.4", "yhi 0.6 0.4").replace("ylo -1 0.4", "ylo -0.6 0.4")
+    short = JET.replace("block -1.4", "block -0.4").replace("yhi 1 0.4",
+                                                            "yhi 0.6 0.4").replace("ylo -1 0.4", "ylo -0.6 0.4")
     first = go(1, short + "run 500 post no\n" + row)
     assert first[6] > 0.1 and first[3] > 0.01
     assert np.abs(go(at_most(3), short + "run 500 post no\n" + row) - first).max() <= 1e-12 * np.abs(first).max()
     go(1, short + "restart 300 half\nrun 310 post no\n" + row)
-    fixes = "\n".join(line for line in short.splitlines() if line.startswith(("fix", "neigh", "timestep", "compute", "thermo", "variable")))
+    fixes = "\n".join(line for line in short.splitlines()
+                      if line.startswith(("fix", "neigh", "timestep", "compute", "thermo", "variable")))
     again = go(2, "atom_modify map array\nread_restart half.300\n" + fixes + "\nrun 200 post no\n" + row)
     assert np.abs(again - first).max() <= 1e-12 * np.abs(first).max()
 
@@ -272,13 +286,16 @@ def test_the_work_of_a_piston_is_that_of_its_force():
     run(lmp, COLUMN + FLOW.format(**SHIFT) + lift + "run 200 post no")
     loads = np.array([lmp.extract_fix("load", 0, 1, k) for k in range(201)])
     work = energy(lmp)[5]
-    assert work == pytest.approx(-0.1 * 0.0025 * (loads.sum() - loads[0] - 0.5 * loads[-1]), rel=1e-9)    # it starts from rest
+    # it starts from rest
+    assert work == pytest.approx(-0.1 * 0.0025 * (loads.sum() - loads[0] - 0.5 * loads[-1]), rel=1e-9)
     assert work > 0.02
     lmp.close()
 
 
-DUMPED = "dump d water custom 60 dump.{n} id c_S[1] c_S[2]\ndump_modify d format float %.17g\nfix out all print 60 \"{row}\" file out.{n} screen no\n"
-ROW = " ".join("$(%s)" % name for name in ["c_E[%d]" % k for k in (1, 2, 3, 4, 5, 6)] + ["c_P[%d]" % k for k in (1, 2, 3, 4)])
+DUMPED = ("dump d water custom 60 dump.{n} id c_S[1] c_S[2]\ndump_modify d format float %.17g\n"
+          "fix out all print 60 \"{row}\" file out.{n} screen no\n")
+ROW = " ".join("$(%s)" % name for name in ["c_E[%d]" % k for k in (1, 2, 3, 4, 5, 6)] +
+               ["c_P[%d]" % k for k in (1, 2, 3, 4)])
 
 
 def numbers(directory, name):
@@ -294,7 +311,8 @@ def test_ranks_and_restarts_leave_every_output_alone(scheme, tmp_path):
         done = mpirun(ranks, script.replace("{n}", name).replace("{row}", ROW), tmp_path)
         assert done.returncode == 0, done.stdout + done.stderr
         shown = read_dump(tmp_path / ("dump." + name))
-        return numbers(tmp_path, name), np.sort([shown["c_S[1]"], shown["c_S[2]"]])    # lattices give other IDs on other ranks
+        # lattices give other IDs on other ranks
+        return numbers(tmp_path, name), np.sort([shown["c_S[1]"], shown["c_S[2]"]])
 
     first, dump = go(1, begin + end, "one")
     assert (np.abs(first[[0, 1, 2, 3, 4, 5, 6, 8]]) > 0).all()
@@ -303,7 +321,8 @@ def test_ranks_and_restarts_leave_every_output_alone(scheme, tmp_path):
     assert np.abs(dump - other_dump).max() <= 1e-12
     go(2, begin + end.replace("run 120", "restart 60 half\nrun 70"), "half")
     fixes = FLOW.format(**dict(scheme, pair="")) + moving
-    again, _ = go(2, "atom_modify map array\nread_restart half.60\n" + fixes + end.replace("run 120", "run 60"), "again")
+    again, _ = go(2, "atom_modify map array\nread_restart half.60\n" + fixes + end.replace("run 120", "run 60"),
+                  "again")
     assert np.abs(again - first).max() <= 1e-12 * np.abs(first).max()
 
 
@@ -314,8 +333,11 @@ ERRORS = {
     "short": ("compute P all sph/probe pressure 0 0", "keyword point of a probe: value missing"),
     "energy": ("compute E all sph/energy potential", "unknown keyword 'potential'"),
     "surface": ("compute S all sph/surface/atom 3", "unknown keyword '3'"),
-    "no list": ("compute S all sph/surface/atom\nwrite_dump all custom none.dump c_S[1]", "no neighbour list yet|not current|before initialization by a run"),    # the last is LAMMPS's, of 2025
-    "no pair": ("pair_style none\ncompute P all sph/probe pressure 0 0 0\nrun 0", "there is no pair_style sph/artVisc/tensCorr"),
+    # the last is LAMMPS's, of 2025
+    "no list": ("compute S all sph/surface/atom\nwrite_dump all custom none.dump c_S[1]",
+                "no neighbour list yet|not current|before initialization by a run"),
+    "no pair": ("pair_style none\ncompute P all sph/probe pressure 0 0 0\nrun 0",
+                "there is no pair_style sph/artVisc/tensCorr"),
     "fix taken": ("fix E_SPH_ENERGY all enforce2d\ncompute E all sph/energy", "the fix ID E_SPH_ENERGY is taken"),
     "fix gone": ("compute E all sph/energy\nthermo_style custom c_E\nunfix E_SPH_ENERGY\nrun 0", "has been deleted"),
 }
@@ -327,4 +349,5 @@ def test_bad_input(case, tmp_path, monkeypatch):
 
     monkeypatch.chdir(tmp_path)
     text, expected = ERRORS[case]
-    assert re.search(expected, message(PERIODIC.format(pair="", density="", background="").split("compute E")[0] + text))
+    assert re.search(expected, message(PERIODIC.format(pair="", density="", background="").split("compute E")[0] +
+                                       text))

@@ -11,7 +11,8 @@ def probes(lmp):
 
 
 def test_the_load_on_patches_of_a_wall_at_rest():
-    """Force on the particles of a wall over the area: hydrostatic to 3 %, in the corner, too, if those under the floor are counted."""
+    """Force on the particles of a wall over the area: hydrostatic to 3 %, in the corner, too, if those under the floor
+    are counted."""
     still = COLUMN.replace("2.4 -0.4", "1.4 -0.4").replace("tank block 0 2", "tank block 0 1")
     patches = """
     region low block INF 0 INF 0.3 INF INF units box
@@ -73,7 +74,8 @@ fix sum all ave/time 1 250 250 v_load c_P[1]
 
 @pytest.mark.parametrize("rows", [2, 10])
 def test_the_impulse_of_a_slab_is_in_the_load_and_not_in_the_probe(rows):
-    """Water that hits a plate at c/7.5 and flies back. The load is its change of momentum; the probe's pressure is not, as its page says."""
+    """Water that hits a plate at c/7.5 and flies back. The load is its change of momentum; the probe's pressure is not,
+    as its page says."""
     lmp = start()
     run(lmp, SLAB.format(end=3 + rows) + "run 250 post no")
     load, probe = (15 * lmp.extract_fix("sum", 0, 1, k) for k in (0, 1))
@@ -86,11 +88,14 @@ def test_the_impulse_of_a_slab_is_in_the_load_and_not_in_the_probe(rows):
 
 @pytest.mark.parametrize("tension", ["yes", "no"])
 def test_water_without_tension_comes_apart(tension):
-    """Two halves of a slab that fly away from each other, in the plain scheme: nothing but tension takes from their energy."""
+    """Two halves of a slab that fly away from each other, in the plain scheme: nothing but tension takes from their
+    energy."""
     text = SLAB.format(end=36).replace("slab block 3", "slab block 30").replace("1 7\n", "1 7 tension %s\n" % tension)
     lmp = start()
-    run(lmp, text.replace(" delta 0.1", "").replace(" shift yes", "") + "variable apart atom (x>33)*2-1\nset group water vx v_apart\n"
-        "compute rho water sph/rho/atom\ncompute least water reduce min c_rho\nthermo_style custom step c_least\nrun 100")
+    run(lmp, text.replace(" delta 0.1", "").replace(" shift yes", "") + "variable apart atom (x>33)*2-1\n"
+        "set group water vx v_apart\n"
+        "compute rho water sph/rho/atom\ncompute least water reduce min c_rho\nthermo_style custom step c_least\n"
+                                                                        "run 100")
     v = np.array(lmp.numpy.extract_atom("v"))[:lmp.extract_global("nlocal")]
     kinetic = (v ** 2).sum() / 72
     if tension == "no":
@@ -102,8 +107,9 @@ def test_water_without_tension_comes_apart(tension):
 
 
 def test_spray_that_comes_together_has_the_volume_that_it_had():
-    """A disk bursts in a harmonic trap, twice as wide as it was: particles swing, x cos(wt) + x 2 sin(wt), and nothing pushes until they are back where
-    they were. Density that had a limit near rho0 pushed as soon as they came nearer, and splashed water stood twice as high as it should."""
+    """A disk bursts in a harmonic trap, twice as wide as it was: particles swing, x cos(wt) + x 2 sin(wt), and nothing
+    pushes until they are back where they were. Density that had a limit near rho0 pushed as soon as they came nearer,
+    and splashed water stood twice as high as it should."""
     lmp = start()
     run(lmp, BEGIN + """
 boundary f f p
@@ -140,8 +146,8 @@ timestep $(10*2.214297435588181/400)
 
 
 def test_probes_of_water_at_rest():
-    """Pressure inside to 1 %, on the wall with its particles to 5 %; height to a twentieth of a spacing; a dry column has 0; one row of 10
-    is the surface, and the first and last columns are not, since walls count."""
+    """Pressure inside to 1 %, on the wall with its particles to 5 %; height to a twentieth of a spacing; a dry column
+    has 0; one row of 10 is the surface, and the first and last columns are not, since walls count."""
     still = COLUMN.replace("2.4 -0.4", "1.4 -0.4").replace("tank block 0 2", "tank block 0 1")
     lmp = start()
     run(lmp, still + FLOW.format(**SHIFT) + "run 0 post no")
@@ -183,7 +189,8 @@ run 0
 
 @pytest.mark.parametrize("width", [0.1, 0.2, 0.3, 0.5, 0.8])
 def test_probes_in_a_box_narrower_than_the_support(width):
-    """One to eight particles across, periodic: every width has the water of a wide box, all images of a particle count."""
+    """One to eight particles across, periodic: every width has the water of a wide box, all images of a particle
+    count."""
     lmp = start()
     run(lmp, NARROW.format(1.2))
     wide = probes(lmp).copy()
@@ -195,11 +202,13 @@ def test_probes_in_a_box_narrower_than_the_support(width):
 
 
 def test_surface_particles_of_a_list_that_is_gone_are_refused():
-    """Asked by python between two runs, after half of the atoms have been deleted: the list of neighbours is that of the others."""
+    """Asked by python between two runs, after half of the atoms have been deleted: the list of neighbours is that of
+    the others."""
     lmp = start()
     run(lmp, PERIODIC.format(pair="", density="", background="") + "compute S all sph/surface/atom\nrun 1")
     lmp.extract_compute("S", 1, 2)
-    run(lmp, "region half block INF 0.5 INF INF INF INF units box\ndelete_atoms region half compress no\nreset_timestep 7")
+    run(lmp, "region half block INF 0.5 INF INF INF INF units box\ndelete_atoms region half compress no\n"
+             "reset_timestep 7")
     with pytest.raises(Exception, match="there is no neighbour list yet"):
         lmp.extract_compute("S", 1, 2)
     run(lmp, "run 0")

@@ -5,7 +5,8 @@ import pytest
 from host import allowed
 from sph_tools import jittered_lattice, mpirun, read_dump, write_data
 
-# Forces and places in steps 0, 1 and 100. One start has the scene with newton on, and then, after `clear`, with newton off.
+# Forces and places in steps 0, 1 and 100. One start has the scene with newton on, and then, after `clear`, with newton
+# off.
 STEPS = (0, 1, 100)
 SCENE = """
     plugin load stokesdynplugin.so
@@ -35,36 +36,34 @@ SCENE = """
 
 THREE = dict(dim=3, n=8, m1=0.001, m2=0.0013)
 TWO = dict(dim=2, n=12, m1=0.1, m2=0.13)
+MOVE = "fix move all nve/sph"
+DELTA = "fix rho all sph/density/continuity delta 0.1\n"
+FILTER = "fix filter all sph/density/corr shepard every 7\n"
+FLUIDS = ("group a type 1\ngroup b type 2\nunfix eos\nfix eos a sph/pressure Tait 60000 1000 7\n"
+          "fix other b sph/pressure Tait 60000 1000 7 50\nfix rho all sph/density/continuity delta 0.1 volume yes\n")
+WALL = ("group fluid type 1\ngroup wall type 2\nfix rho all sph/density/continuity\n"
+        "fix wall wall wall/adami/sph gravity 3 -1 0\nfix rest wall nve/sph/stationary\nfix move fluid nve/sph")
+SPACED = "pair_coeff * * deltap 0.01\n"
 CASES = {
     "leapfrog": dict(THREE, kernel="wendland 0.012 artVisc 0.1 0.2 1.44e-6 tensCorr 0.2 0.01 viscosity 0.01",
-                     fixes="fix rho all sph/density/continuity\nfix move all nve/sph"),
+                     fixes="fix rho all sph/density/continuity\n" + MOVE),
     "delta and filter": dict(TWO, kernel="cubicspline 0.012 artVisc 0.1 0.2 1.44e-6 tensCorr 0.2 0.01",
-                             fixes="fix rho all sph/density/continuity delta 0.1\nfix filter all sph/density/corr shepard every 7\n"
-                                   "fix move all nve/sph"),
-    "summation": dict(TWO, kernel="wendland 0.012 artVisc 0.1 0.2 1.44e-6", fixes="fix rho all sph/density/summation\nfix move all nve/sph"),
+                             fixes=DELTA + FILTER + MOVE),
+    "summation": dict(TWO, kernel="wendland 0.012 artVisc 0.1 0.2 1.44e-6",
+                      fixes="fix rho all sph/density/summation\n" + MOVE),
     "shift": dict(TWO, kernel="wendland 0.012 artVisc 0.1 0.2 1.44e-6 viscosity 0.01 central shift yes",
-                  fixes="fix rho all sph/density/continuity delta 0.1\nfix move all nve/sph"),
-    "shift in 3-D": dict(THREE, kernel="wendland 0.012 artVisc 0.1 0.2 1.44e-6 shift yes",
-                         fixes="fix rho all sph/density/continuity delta 0.1\nfix move all nve/sph"),
+                  fixes=DELTA + MOVE),
+    "shift in 3-D": dict(THREE, kernel="wendland 0.012 artVisc 0.1 0.2 1.44e-6 shift yes", fixes=DELTA + MOVE),
     "correction": dict(TWO, kernel="cubicspline 0.012 artVisc 0.1 0.2 1.44e-6 viscosity 0.01 correction yes",
-                       fixes="fix rho all sph/density/continuity delta 0.1\nfix filter all sph/density/corr shepard every 7\n"
-                             "fix move all nve/sph"),
-    "two fluids": dict(TWO, kernel="wendland 0.012 viscosity 0.01 central",
-                       fixes="group a type 1\ngroup b type 2\nunfix eos\nfix eos a sph/pressure Tait 60000 1000 7\n"
-                             "fix other b sph/pressure Tait 60000 1000 7 50\n"
-                             "fix rho all sph/density/continuity delta 0.1 volume yes\nfix move all nve/sph"),
+                       fixes=DELTA + FILTER + MOVE),
+    "two fluids": dict(TWO, kernel="wendland 0.012 viscosity 0.01 central", fixes=FLUIDS + MOVE),
     "two fluids with shift": dict(TWO, kernel="wendland 0.012 viscosity 0.01 central shift yes",
-                                  fixes="pair_coeff * * deltap 0.01\ngroup a type 1\ngroup b type 2\nunfix eos\nfix eos a sph/pressure Tait 60000 1000 7\n"
-                                        "fix other b sph/pressure Tait 60000 1000 7 50\n"
-                                        "fix rho all sph/density/continuity delta 0.1 volume yes\nfix move all nve/sph"),
+                                  fixes=SPACED + FLUIDS + MOVE),
     "two fluids with correction": dict(TWO, kernel="cubicspline 0.012 viscosity 0.01 central correction yes",
-                                       fixes="pair_coeff * * deltap 0.01\ngroup a type 1\ngroup b type 2\nunfix eos\nfix eos a sph/pressure Tait 60000 1000 7\n"
-                                             "fix other b sph/pressure Tait 60000 1000 7 50\n"
-                                             "fix rho all sph/density/continuity delta 0.1 volume yes\nfix move all nve/sph"),
-    "wall along gravity": dict(TWO, kernel="wendland 0.012 artVisc 0.1 0.2 1.44e-6 viscosity 0.01",
-                               fixes="group fluid type 1\ngroup wall type 2\nfix rho all sph/density/continuity\n"
-                                     "fix wall wall wall/adami/sph gravity 3 -1 0\nfix rest wall nve/sph/stationary\nfix move fluid nve/sph"),
-    "fix sph": dict(TWO, kernel="wendland 0.012 artVisc 0.1 0.2 1.44e-6", fixes="fix rho all sph/density/continuity\nfix move all sph"),
+                                       fixes=SPACED + FLUIDS + MOVE),
+    "wall along gravity": dict(TWO, kernel="wendland 0.012 artVisc 0.1 0.2 1.44e-6 viscosity 0.01", fixes=WALL),
+    "fix sph": dict(TWO, kernel="wendland 0.012 artVisc 0.1 0.2 1.44e-6",
+                    fixes="fix rho all sph/density/continuity\nfix move all sph"),
 }
 COLUMNS = "x y z vx vy vz fx fy fz f_eos".split()
 

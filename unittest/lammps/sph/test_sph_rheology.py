@@ -1,4 +1,5 @@
-"""Fluids whose viscosity depends on the shear rate, against closed forms: channels, a Couette viscometer; and what is refused."""
+"""Fluids whose viscosity depends on the shear rate, against closed forms: channels, a Couette viscometer; and what is
+refused."""
 import numpy as np
 import pytest
 
@@ -74,16 +75,17 @@ CHANNEL = """
 
 
 def channel(name, across, T, form="laplacian", dt=0.0, more=""):
-    """A channel, from the parabola of a Newtonian fluid on: its root mean square error in units of the speed of the centre, and that of the
-    discharge; at the start, and at the end. `more`: words for the pair style."""
+    """A channel, from the parabola of a Newtonian fluid on: its root mean square error in units of the speed of the
+    centre, and that of the discharge; at the start, and at the end. `more`: words for the pair style."""
     dx, g, layers = 1.0 / across, driven(name), 3
     h = 1.3 * dx
     dt = dt or min(0.3 * h / 10, 0.9 * h * h / (8 * LAWS[name][3]))
     lmp = start()
     try:
-        run(lmp, CHANNEL.format(dx=dx, half=dx / 2, length=8 * dx, bottom=-0.5 - (layers + 1) * dx, top=0.5 + (layers + 1) * dx, floor=-0.5 - layers * dx,
-                                roof=0.5 + layers * dx, mass=dx * dx, tenth=0.1 * dx, skin=0.3 * dx, h=h, viscosity=words(name).format(form) + more,
-                                force=g * dx * dx, dt=dt))
+        run(lmp, CHANNEL.format(dx=dx, half=dx / 2, length=8 * dx, bottom=-0.5 - (layers + 1) * dx,
+                                top=0.5 + (layers + 1) * dx, floor=-0.5 - layers * dx,
+                                roof=0.5 + layers * dx, mass=dx * dx, tenth=0.1 * dx, skin=0.3 * dx, h=h,
+                                viscosity=words(name).format(form) + more, force=g * dx * dx, dt=dt))
         errors = []
         for steps in (0, int(T / dt)):
             run(lmp, "run %d" % steps)
@@ -108,20 +110,23 @@ def test_a_channel_forgets_its_parabola_and_finds_the_closed_form(name, T):
 
 @pytest.fixture
 def stiff(monkeypatch):
-    """Bingham's fluid, whose plug fills half of the channel, with a mumax of 160 times mu; the longest explicit time step, 10 across"""
+    """Bingham's fluid, whose plug fills half of the channel, with a mumax of 160 times mu; the longest explicit time
+    step, 10 across"""
     monkeypatch.setitem(LAWS, "bingham", (0.1, 1.0, 1.0, 16.0))
     return 0.13**2 / (8 * 16)
 
 
 def test_implicit_friction_bears_twenty_times_the_explicit_step(stiff):
-    """As explicit friction in 22 times as many steps (0.0570, -0.0200), which boils at such a step: the plug is fluid there."""
+    """As explicit friction in 22 times as many steps (0.0570, -0.0200), which boils at such a step: the plug is fluid
+    there."""
     implicit = channel("bingham", 10, 2.0, dt=20 * stiff, more=" implicit yes")[1]
     assert implicit[0] == pytest.approx(0.0570, abs=1e-3) and implicit[1] == pytest.approx(-0.0200, abs=1e-3)
     assert channel("bingham", 10, 2.0, dt=20 * stiff)[1][0] > 0.08
 
 
 def test_implicit_friction_is_of_first_order_and_meets_the_explicit_one(stiff):
-    """From the same start for the same time: half the step, half the difference; 1e-6 of the centre's speed in small steps."""
+    """From the same start for the same time: half the step, half the difference; 1e-6 of the centre's speed in small
+    steps."""
     apart = []
     for part in (0.2, 0.1):
         both = [channel("bingham", 10, 40 * stiff, dt=part * stiff, more=more)[1] for more in ("", " implicit yes")]
@@ -130,10 +135,12 @@ def test_implicit_friction_is_of_first_order_and_meets_the_explicit_one(stiff):
 
 
 def test_a_wall_bears_what_drives_the_channel_with_implicit_friction():
-    """Newton's fluid in steps of 30 times the explicit limit, in which explicit friction does not last: momentum leaves by the walls alone."""
+    """Newton's fluid in steps of 30 times the explicit limit, in which explicit friction does not last: momentum leaves
+    by the walls alone."""
     dx, h, g = 0.1, 0.13, 8.0 * 16
-    text = CHANNEL.format(dx=dx, half=dx / 2, length=8 * dx, bottom=-0.9, top=0.9, floor=-0.8, roof=0.8, mass=dx * dx, tenth=0.1 * dx, skin=0.03,
-                          h=h, viscosity="viscosity 16 {}", force=g * dx * dx, dt=0.3 * h / 10)
+    text = CHANNEL.format(dx=dx, half=dx / 2, length=8 * dx, bottom=-0.9, top=0.9, floor=-0.8, roof=0.8, mass=dx * dx,
+                          tenth=0.1 * dx, skin=0.03, h=h, viscosity="viscosity 16 {}", force=g * dx * dx,
+                          dt=0.3 * h / 10)
     lmp = start()
     try:
         run(lmp, text.format("implicit yes") + "run 200")
@@ -146,14 +153,16 @@ def test_a_wall_bears_what_drives_the_channel_with_implicit_friction():
 
 
 def test_a_type_may_have_its_own_law():
-    """Newton's fluid by pair_coeff (tau 0, n 1) in a style that is Bingham's: the parabola stays. Without it, the same g moves nothing."""
+    """Newton's fluid by pair_coeff (tau 0, n 1) in a style that is Bingham's: the parabola stays. Without it, the same
+    g moves nothing."""
     dx, h = 0.1, 0.13
     speeds = []
     for own in ("", "pair_coeff * * c 10 mu 0.1 tau 0"):
         lmp = start()
         try:
-            run(lmp, CHANNEL.format(dx=dx, half=dx / 2, length=8 * dx, bottom=-0.9, top=0.9, floor=-0.8, roof=0.8, mass=dx * dx, tenth=0.1 * dx,
-                                    skin=0.03, h=h, viscosity="viscosity 0.1 rheology bingham 0.9 4", force=0.8 * dx * dx, dt=5e-4) +
+            run(lmp, CHANNEL.format(dx=dx, half=dx / 2, length=8 * dx, bottom=-0.9, top=0.9, floor=-0.8, roof=0.8,
+                                    mass=dx * dx, tenth=0.1 * dx, skin=0.03, h=h,
+                                    viscosity="viscosity 0.1 rheology bingham 0.9 4", force=0.8 * dx * dx, dt=5e-4) +
                 own + "\nrun 4000")
             speeds.append(by_id(lmp, "v", 3)[by_id(lmp, "type") == 1, 0].mean())
         finally:
@@ -163,13 +172,15 @@ def test_a_type_may_have_its_own_law():
 
 
 def test_it_stands_on_a_slope_below_its_yield_stress_and_creeps_with_mumax():
-    """A layer without a lid: what moves it, g d = 0.8, is below tau = 0.9, and it goes with the speed of a fluid that has mumax everywhere."""
+    """A layer without a lid: what moves it, g d = 0.8, is below tau = 0.9, and it goes with the speed of a fluid that
+    has mumax everywhere."""
     dx, h, dt = 0.1, 0.2, 2e-4
     lmp = start()
     try:
-        text = CHANNEL.format(dx=dx, half=dx / 2, length=8 * dx, bottom=-1.0, top=0.9, floor=-0.9, roof=0.5, mass=dx * dx, tenth=0, skin=0.03,
-                              h=h, viscosity="", force=0.8 * dx * dx, dt=dt)
-        text = text.replace("cubicspline", "wendland").replace("correction yes", "viscosity 0.1 central rheology bingham 0.9 8 shift yes")
+        text = CHANNEL.format(dx=dx, half=dx / 2, length=8 * dx, bottom=-1.0, top=0.9, floor=-0.9, roof=0.5,
+                              mass=dx * dx, tenth=0, skin=0.03, h=h, viscosity="", force=0.8 * dx * dx, dt=dt)
+        text = text.replace("cubicspline", "wendland").replace("correction yes",
+                                                               "viscosity 0.1 central rheology bingham 0.9 8 shift yes")
         run(lmp, text.replace("(1-4*y*y)", "0") + "run 3000")
         water = by_id(lmp, "type") == 1
         u, y = by_id(lmp, "v", 3)[water, 0], by_id(lmp, "x", 3)[water, 1]
@@ -179,8 +190,9 @@ def test_it_stands_on_a_slope_below_its_yield_stress_and_creeps_with_mumax():
         lmp.close()
 
 
-SCENE = CHANNEL.format(dx=0.1, half=0.05, length=1.6, bottom=-0.9, top=0.9, floor=-0.8, roof=0.8, mass=0.01, tenth=0.01, skin=0.03, h=0.13,
-                       viscosity="viscosity 0.1 central rheology herschel_bulkley 0.05 0.7 0.8", force=0.008, dt=2e-3)
+SCENE = CHANNEL.format(dx=0.1, half=0.05, length=1.6, bottom=-0.9, top=0.9, floor=-0.8, roof=0.8, mass=0.01, tenth=0.01,
+                       skin=0.03, h=0.13, viscosity="viscosity 0.1 central rheology herschel_bulkley 0.05 0.7 0.8",
+                       force=0.008, dt=2e-3)
 DUMP = "\nwrite_dump all custom end.dump id x y vx vy fx fy modify format float %.17g"
 
 
@@ -188,7 +200,8 @@ DUMP = "\nwrite_dump all custom end.dump id x y vx vy fx fy modify format float 
 @pytest.mark.parametrize("friction, close", [("explicit", 1e-9), ("implicit", 1e-7)])
 def test_ranks_newton_and_a_restart_change_nothing(friction, close, tmp_path):
     """Of implicit friction the solve is left at 1e-8."""
-    scene = SCENE if friction == "explicit" else SCENE.replace("correction yes", "correction yes implicit yes").replace("0.7 0.8", "0.7 8")
+    scene = SCENE if friction == "explicit" else SCENE.replace("correction yes", "correction yes implicit yes").replace(
+        "0.7 0.8", "0.7 8")
     again = """
     atom_modify map array
     read_restart half
@@ -196,8 +209,10 @@ def test_ranks_newton_and_a_restart_change_nothing(friction, close, tmp_path):
     neigh_modify delay 0 every 1 exclude type 2 2
     """ + scene[scene.index("    fix eos"):]
     ends = []
-    for name, ranks, text in (("one", 1, scene + "run 100"), ("three", 3, scene + "run 100"), ("newton off", 2, "newton off\n" + scene + "run 100"),
-                              ("restart", 1, scene + "run 50\nwrite_restart half\nclear\nplugin load stokesdynplugin.so\n" + again + "run 50")):
+    for name, ranks, text in (("one", 1, scene + "run 100"), ("three", 3, scene + "run 100"),
+                              ("newton off", 2, "newton off\n" + scene + "run 100"),
+                              ("restart", 1, scene + "run 50\nwrite_restart half\nclear\n"
+                                                     "plugin load stokesdynplugin.so\n" + again + "run 50")):
         folder = tmp_path / name
         folder.mkdir()
         done = mpirun(ranks, text + DUMP, folder)
@@ -217,8 +232,10 @@ def test_ranks_newton_and_a_restart_change_nothing(friction, close, tmp_path):
 STYLE = "pair_style sph/artVisc/tensCorr wendland 0.012 viscosity 1 "
 WITH = PAIR.replace("\n", " viscosity 1 rheology bingham 2 30\n", 1)
 REFUSED = {
-    "law": (STYLE + "rheology mud 1 2", "keyword rheology: 'mud' is none of: power_law, bingham, herschel_bulkley, carreau"),
-    "no viscosity": (STYLE.replace("viscosity 1 ", "") + "rheology bingham 1 2", "keyword rheology needs keyword viscosity"),
+    "law": (STYLE + "rheology mud 1 2",
+            "keyword rheology: 'mud' is none of: power_law, bingham, herschel_bulkley, carreau"),
+    "no viscosity": (STYLE.replace("viscosity 1 ", "") + "rheology bingham 1 2",
+                     "keyword rheology needs keyword viscosity"),
     "tau": (STYLE + "rheology bingham -1 2", "keyword rheology: '-1' must be >= 0"),
     "mumax": (STYLE + "rheology bingham 1", "keyword rheology: value missing"),
     "n": (STYLE + "rheology power_law 0 10", "keyword rheology: '0' must be > 0"),
@@ -226,11 +243,15 @@ REFUSED = {
     "coeff tau": (WITH + "pair_coeff 1 1 tau -3", "keyword tau: '-3' must be >= 0"),
     "coeff n": (WITH + "pair_coeff 1 1 n 0", "keyword n: '0' must be > 0"),
     "coeff pair": (WITH + "pair_coeff 1 2 mu 3", "keyword mu: with rheology and with implicit each particle"),
-    "mumax below mu": (WITH + "pair_coeff * * mumax 0.5\n" + MOVE + "run 0", "type 1: mumax = 0.5 must not be smaller than mu = 1"),
+    "mumax below mu": (WITH + "pair_coeff * * mumax 0.5\n" + MOVE + "run 0",
+                       "type 1: mumax = 0.5 must not be smaller than mu = 1"),
     "implicit": (STYLE.replace("viscosity 1 ", "") + "implicit yes", "keyword implicit needs keyword viscosity"),
-    "implicit pair": (PAIR.replace("\n", " viscosity 1 implicit yes\n", 1) + "pair_coeff 1 2 mu 3", "keyword mu: with rheology and with implicit"),
-    "implicit fix sph": (PAIR.replace("\n", " viscosity 1 implicit yes\n", 1) + MOVE.replace("nve/sph", "sph") + "run 0", "keyword implicit needs fix nve/sph"),
-    "carreau n": (PAIR.replace("\n", " viscosity 1 rheology carreau 0.1 1.5 30\n", 1) + MOVE + "run 0", "n = 1.5 must be at most 1 with carreau"),
+    "implicit pair": (PAIR.replace("\n", " viscosity 1 implicit yes\n", 1) + "pair_coeff 1 2 mu 3",
+                      "keyword mu: with rheology and with implicit"),
+    "implicit fix sph": (PAIR.replace("\n", " viscosity 1 implicit yes\n", 1) + MOVE.replace("nve/sph", "sph") +
+                         "run 0", "keyword implicit needs fix nve/sph"),
+    "carreau n": (PAIR.replace("\n", " viscosity 1 rheology carreau 0.1 1.5 30\n", 1) + MOVE + "run 0",
+                  "n = 1.5 must be at most 1 with carreau"),
 }
 
 

@@ -16,7 +16,8 @@ def off(value, expected):
 
 
 def test_sound_wave_does_not_grow(tmp_path):
-    """Leapfrog keeps the energy in a band of order (w dt)^2, here 1e-3, however long it runs; so the second half is no wider than the first."""
+    """Leapfrog keeps the energy in a band of order (w dt)^2, here 1e-3, however long it runs; so the second half is no
+    wider than the first."""
     _, energy, _ = wave(str(tmp_path / "wave.data"), "nve/sph", 0.2, 20000, 40)
     band = np.abs(energy / energy[0] - 1)
     assert band.max() < 1.5e-3
@@ -39,7 +40,8 @@ fix move all nve/sph
 
 
 def scene(extra=""):
-    return MOVING.replace("fix eos", "#").replace("fix density", "#") + pair_commands("wendland", 1, 1, "viscosity 0.2") + FIXES + extra
+    return (MOVING.replace("fix eos", "#").replace("fix density", "#") +
+            pair_commands("wendland", 1, 1, "viscosity 0.2") + FIXES + extra)
 
 
 def state(lmp):
@@ -75,7 +77,8 @@ def test_restart_without_pair_style(how, unbroken, tmp_path):
     """The pair style and its coefficients come back from the file; the fixes are given again, as LAMMPS wants it."""
     path = str(tmp_path / "restart")
     trajectory(scene(how.format(path)))
-    again = "atom_modify map array\nread_restart %s\nneighbor 0.003 bin\nneigh_modify delay 0 every 1\ntimestep 2e-5\n" % path
+    again = ("atom_modify map array\nread_restart %s\nneighbor 0.003 bin\nneigh_modify delay 0 every 1\n"
+             "timestep 2e-5\n" % path)
     same(trajectory(again + FIXES + "run 50"), unbroken)
 
 
@@ -83,10 +86,12 @@ def test_restart_without_pair_style(how, unbroken, tmp_path):
 def test_a_run_that_is_not_prepared_misses_a_fix_that_is_gone(gone):
     lines = scene().replace("tensCorr", "#") if gone == "SPH_SHIFT_STATE" else scene()
     if gone == "SPH_SHIFT_STATE":
-        lines = (MOVING.replace("fix eos", "#").replace("fix density", "#") + "pair_style sph/artVisc/tensCorr wendland 0.012 shift yes\n"
+        lines = (MOVING.replace("fix eos", "#").replace("fix density", "#") +
+                 "pair_style sph/artVisc/tensCorr wendland 0.012 shift yes\n"
                  "pair_coeff * * c 20 deltap 0.01\n" + FIXES)
     if gone == "wall":
-        lines = lines.replace("fix move all", "group w id 1:9\ngroup fluid subtract all w\nfix wall w wall/adami/sph\nfix move fluid")
+        lines = lines.replace("fix move all", "group w id 1:9\ngroup fluid subtract all w\nfix wall w wall/adami/sph\n"
+                                              "fix move fluid")
     lmp = start()
     try:
         run(lmp, lines + f"run 1\nunfix {gone}")
@@ -107,7 +112,8 @@ def test_a_run_that_is_not_prepared_misses_a_pair_style_that_is_new():
 
 
 def test_a_fix_with_the_id_of_the_memory_stays_when_the_pair_style_goes(tmp_path):
-    done = mpirun(1, random_scene() + pair_commands("wendland", 1, 1) + "\nfix SPH_SHIFT_STATE all nve\npair_style none\nunfix SPH_SHIFT_STATE\nclear\nprint ended",
+    done = mpirun(1, random_scene() + pair_commands("wendland", 1, 1) + "\nfix SPH_SHIFT_STATE all nve\n"
+                  "pair_style none\nunfix SPH_SHIFT_STATE\nclear\nprint ended",
                   tmp_path)
     assert done.returncode == 0 and "ended" in done.stdout, done.stdout[-1000:]
 
@@ -127,7 +133,8 @@ def test_restart_file_of_another_version_is_said_once_and_not_read(tmp_path):
     mine = path.read_bytes()
     assert mine.count(b"stokesdyn 1 nve/sph") == 1
     path.write_bytes(mine.replace(b"stokesdyn 1 nve/sph", b"stokesdyn 7 nve/sph"))
-    done = mpirun(2, "read_restart %s\nneighbor 0.003 bin\nneigh_modify delay 0 every 1\ntimestep 2e-5\n" % path + FIXES + "run 5", tmp_path)
+    done = mpirun(2, "read_restart %s\nneighbor 0.003 bin\nneigh_modify delay 0 every 1\ntimestep 2e-5\n" % path +
+                  FIXES + "run 5", tmp_path)
     assert done.returncode == 0, done.stdout
     warnings = [line for line in done.stdout.splitlines() if "WARNING" in line and "nve/sph" in line]
     assert len(warnings) == 1, done.stdout
@@ -152,7 +159,8 @@ def test_particles_at_rest_change_density_only():
     lmp = start()
     try:
         run(lmp, random_scene() + pair_commands("wendland", 0, 0) +
-            "\ngroup one type 1\ngroup two type 2\nvelocity two set 0 0 0\nfix a one nve/sph\nfix b two nve/sph/stationary\ntimestep 1e-5\nrun 0")
+            "\ngroup one type 1\ngroup two type 2\nvelocity two set 0 0 0\nfix a one nve/sph\n"
+            "fix b two nve/sph/stationary\ntimestep 1e-5\nrun 0")
         x, rho, types = by_id(lmp, "x", 3), by_id(lmp, "rho"), by_id(lmp, "type")
         run(lmp, "run 10")
         still = types == 2
@@ -166,12 +174,13 @@ def test_particles_at_rest_change_density_only():
 def test_communication_is_handed_back(tmp_path):
     """Ghost velocities are asked for as long as the pair style is there, and kept where the user asked for them."""
     for user in ("no", "yes"):
-        done = mpirun(1, scene("comm_modify vel %s\nrun 0\ninfo communication\npair_style none\ninfo communication" % user), tmp_path)
+        done = mpirun(1, scene("comm_modify vel %s\nrun 0\ninfo communication\npair_style none\ninfo communication" %
+                               user), tmp_path)
         said = [line.split()[-1] for line in done.stdout.splitlines() if "elocities for ghost" in line]
         assert said == ["yes", user], done.stdout
 
 
-# --- walls ----------------------------------------------------------------------------------------------------------------
+# --- walls ------------------------------------------------------------------------------------------------------------
 
 
 def one_particle(x, wall):
@@ -212,7 +221,8 @@ def repulsion(D, r0, r):
     ("xplane -1 1 0.3 5", (0.6, 0, 0), (0, 0, 0)),
     ("yplane NULL 1 0.3 5", (0, 0.9, 0), (0, -repulsion(5, 0.3, 0.1), 0)),
     ("zplane -1 NULL 0.3 5", (0, 0, -0.9), (0, 0, repulsion(5, 0.3, 0.1))),
-    ("zcylinder 1 0.3 5", (0.6 * 0.9, 0.8 * 0.9, 0.4), (-0.6 * repulsion(5, 0.3, 0.1), -0.8 * repulsion(5, 0.3, 0.1), 0)),
+    ("zcylinder 1 0.3 5", (0.6 * 0.9, 0.8 * 0.9, 0.4), (-0.6 * repulsion(5, 0.3, 0.1), -0.8 * repulsion(5, 0.3, 0.1),
+                                                        0)),
     ("zcylinder 1 0.3 5", (0, 0, 0.4), (0, 0, 0)),
 ])
 def test_wall_forces(wall, x, expected):
@@ -228,7 +238,8 @@ def test_region_wall_adds_a_mirror_particle():
     for axis, r in ((0, 0.2), (1, 0.1)):
         dW = T.kernel("cubicspline", 3, np.array(r), h)[1]
         expected[axis] = repulsion(D, r0, r) + m * m * 2 * tait(rho) / rho**2 * abs(dW)
-    force, _ = one_particle((-0.8, -0.9, 0), "region r block -1 1 -1 1 -1 1 units box\nfix w all wall/region/sph r 0.3 5")
+    force, _ = one_particle((-0.8, -0.9, 0),
+                            "region r block -1 1 -1 1 -1 1 units box\nfix w all wall/region/sph r 0.3 5")
     assert np.abs(force - expected).max() <= 1e-12 * np.abs(expected).max()
 
 
@@ -269,8 +280,8 @@ run %d
 
 
 def tank(a, push, slip, dt, steps):
-    """Water in a tank that moves with a t^2/2, and on it the force per mass `push`: where it is in the tank, how fast, and its
-    force on the walls."""
+    """Water in a tank that moves with a t^2/2, and on it the force per mass `push`: where it is in the tank, how fast,
+    and its force on the walls."""
     lmp = start()
     try:
         run(lmp, TANK % (0.01 * push, a, a, slip, dt, steps))
@@ -284,8 +295,8 @@ def tank(a, push, slip, dt, steps):
 
 @pytest.mark.parametrize("slip", ["yes", "no"])
 def test_a_tank_that_is_pushed_is_a_tank_at_rest_with_the_inertial_force(slip):
-    """Up to a t dt/2: the density takes the velocity of the water in the middle of a step, and of the walls what fix move has set, that
-    at the end."""
+    """Up to a t dt/2: the density takes the velocity of the water in the middle of a step, and of the walls what fix
+    move has set, that at the end."""
     a, t, apart = 0.3, 0.6, []
     for steps in (150, 300):
         dt = t / steps
@@ -296,7 +307,7 @@ def test_a_tank_that_is_pushed_is_a_tank_at_rest_with_the_inertial_force(slip):
     assert np.allclose(apart[0], apart[1], rtol=0.02)
 
 
-# --- time step limits ---------------------------------------------------------------------------------------------------
+# --- time step limits -------------------------------------------------------------------------------------------------
 
 
 def check(lmp):

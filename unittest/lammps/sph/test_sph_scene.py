@@ -52,7 +52,8 @@ def test_density_follows_a_box_that_moves_its_particles(how, there):
 @pytest.mark.parametrize("remap, factor", [("remap", 1 / 0.9), ("", 1.0)])
 def test_density_follows_change_box_only_where_it_moves_particles(remap, factor):
     lmp = start()
-    run(lmp, SQUARE.replace("region b block 0 1", "region b block 0 1.2") + "region cut block 1 1.2 INF INF INF INF units box\n"
+    run(lmp, SQUARE.replace("region b block 0 1", "region b block 0 1.2") +
+        "region cut block 1 1.2 INF INF INF INF units box\n"
         "delete_atoms region cut\nrun 1 post no\n")
     before = density(lmp)
     run(lmp, "change_box all x scale 0.9 " + remap)
@@ -62,7 +63,8 @@ def test_density_follows_change_box_only_where_it_moves_particles(remap, factor)
 
 def test_a_particle_made_in_a_run_has_the_density_of_its_equation_of_state():
     lmp = start()
-    run(lmp, SQUARE + "region r block 0.3 0.7 0.3 0.7 0 0 units box\nfix in all deposit 1 1 1 77 region r near 0.03\nrun 3 post no\n")
+    run(lmp, SQUARE + "region r block 0.3 0.7 0.3 0.7 0 0 units box\nfix in all deposit 1 1 1 77 region r near 0.03\n"
+                      "run 3 post no\n")
     assert lmp.get_natoms() == 145
     assert density(lmp) == pytest.approx(1.1, rel=0.05)
     lmp.close()
@@ -70,9 +72,11 @@ def test_a_particle_made_in_a_run_has_the_density_of_its_equation_of_state():
 
 def test_a_particle_without_density_is_named_before_its_neighbours():
     lmp = start()
-    with pytest.raises(Exception, match=r"step [12]: atom 145 has the density 0; it must be a number > 0; if it was created in this run"):
+    with pytest.raises(Exception, match=r"step [12]: atom 145 has the density 0; it must be a number > 0; "
+                                        r"if it was created in this run"):
         run(lmp, SQUARE.replace("fix p all sph/pressure Tait $(100*1.1/7) 1.1 7", "fix p all sph/pressure absolut 10") +
-            "region r block 0.3 0.7 0.3 0.7 0 0 units box\nfix in all deposit 1 1 1 77 region r near 0.03\nrun 3 post no\n")
+            "region r block 0.3 0.7 0.3 0.7 0 0 units box\nfix in all deposit 1 1 1 77 region r near 0.03\n"
+            "run 3 post no\n")
     lmp.close()
 
 
@@ -81,7 +85,8 @@ def test_planes_one_behind_the_other_are_refused_in_two_dimensions():
     lmp = start()
     run(lmp, SQUARE.replace("-0.04 0.04", "-0.2 0.2"))
     lmp.numpy.extract_atom("x")[0, 2] = -0.16
-    with pytest.raises(Exception, match="in two dimensions all particles must stand in one plane, and they stand from z = -0.16"):
+    with pytest.raises(Exception,
+                       match="in two dimensions all particles must stand in one plane, and they stand from z = -0.16"):
         run(lmp, "run 0")
     lmp.close()
 
@@ -128,21 +133,24 @@ def log_of(tmp_path, text):
 
 @pytest.mark.parametrize("ratio, warned", [(1, False), (1.05, False), (0.8, True), (2, True)])
 def test_walls_of_another_mass_than_the_fluid_are_warned_of(tmp_path, ratio, warned):
-    log = log_of(tmp_path, f"variable ratio index {ratio}\n" + FLOOR + "fix p all sph/pressure Tait 14.2857 1 7" + REST.format(volume="no"))
+    log = log_of(tmp_path, f"variable ratio index {ratio}\n" + FLOOR + "fix p all sph/pressure Tait 14.2857 1 7" +
+                 REST.format(volume="no"))
     assert ("and the mass of the fluid particles in front of it differ by more than 10 %" in log) == warned
 
 
-@pytest.mark.parametrize("scheme, P0, warned", [("shift yes", 0, False), ("shift yes", 2, True), ("shift pliant", 2, True), ("", 2, False)])
+@pytest.mark.parametrize("scheme, P0, warned", [("shift yes", 0, False), ("shift yes", 2, True),
+                                                ("shift pliant", 2, True), ("", 2, False)])
 def test_a_surface_under_a_background_pressure_is_warned_of(tmp_path, scheme, P0, warned):
     """P0 > 0 says that shift need not end at a surface."""
-    log = log_of(tmp_path, "variable ratio index 1\n" + FLOOR.replace("central", "central " + scheme) + f"fix p all sph/pressure Tait 14.2857 1 7 {P0}" +
+    log = log_of(tmp_path, "variable ratio index 1\n" + FLOOR.replace("central", "central " + scheme) +
+                 f"fix p all sph/pressure Tait 14.2857 1 7 {P0}" +
                  REST.format(volume="no"))
     assert ("fills its vessel, but atom" in log) == warned
 
 
 def test_a_wall_takes_the_pressure_of_another_fluid_where_its_own_is_not():
-    """volume yes, and the floor in the group of a second fix sph/pressure: it bears the water as the floor of the water's own fix does. In a
-    tank that sloshes, fluids come to stand before the walls of each other."""
+    """volume yes, and the floor in the group of a second fix sph/pressure: it bears the water as the floor of the
+    water's own fix does. In a tank that sloshes, fluids come to stand before the walls of each other."""
     loads = []
     for states in ("fix p all sph/pressure Tait 14.2857 1 7",
                    "fix p water sph/pressure Tait 14.2857 1 7\nfix q floor sph/pressure Tait 14.2857 1 7"):
@@ -162,13 +170,16 @@ def test_a_speed_of_sound_that_is_not_the_fluids_is_warned_of(tmp_path, c, warne
 
 @pytest.mark.parametrize("integrator, delta, warned", [("nve/sph", 0.1, False), ("sph", 0, False), ("sph", 0.1, True)])
 def test_delta_that_fix_sph_leaves_without_effect_is_warned_of(tmp_path, integrator, delta, warned):
-    scene = SQUARE.replace("fix m all nve/sph", f"fix m all {integrator}").replace("continuity", f"continuity delta {delta}")
-    assert ("delta of fix sph/density/continuity has no effect with fix sph" in log_of(tmp_path, scene + "run 0 post no\n")) == warned
+    scene = SQUARE.replace("fix m all nve/sph",
+                           f"fix m all {integrator}").replace("continuity", f"continuity delta {delta}")
+    assert ("delta of fix sph/density/continuity has no effect with fix sph" in log_of(
+        tmp_path, scene + "run 0 post no\n")) == warned
 
 
 @pytest.mark.parametrize("h, warned", [(0.1, False), (0.2, True)])
 def test_widths_that_differ_are_warned_of(tmp_path, h, warned):
-    log = log_of(tmp_path, "variable ratio index 1\n" + FLOOR + f"pair_coeff 2 2 c 10 h {h}\nfix p all sph/pressure Tait 14.2857 1 7" +
+    log = log_of(tmp_path, "variable ratio index 1\n" + FLOOR +
+                 f"pair_coeff 2 2 c 10 h {h}\nfix p all sph/pressure Tait 14.2857 1 7" +
                  REST.format(volume="no"))
     assert ("types 1 and 2 differ in h" in log) == warned
 
@@ -176,19 +187,22 @@ def test_widths_that_differ_are_warned_of(tmp_path, h, warned):
 @pytest.mark.parametrize("rho0, volume, warned", [(1.05, "no", False), (1.2, "no", True), (1.2, "yes", False)])
 def test_two_fluids_without_their_volume_are_warned_of(tmp_path, rho0, volume, warned):
     states = f"fix p high sph/pressure Tait 14.2857 1 7\nfix q low sph/pressure Tait 14.2857 {rho0} 7"
-    log = log_of(tmp_path, "variable ratio index 1\n" + FLOOR + "region deep block INF INF INF 0.2 INF INF units box\ngroup low region deep\n"
+    log = log_of(tmp_path, "variable ratio index 1\n" + FLOOR + "region deep block INF INF INF 0.2 INF INF units box\n"
+                 "group low region deep\n"
                  "group high subtract all low\n" + states + REST.format(volume=volume))
     assert (f"fix q has rho0 = {rho0}, fix p has rho0 = 1: where these fluids meet" in log) == warned
 
 
 def test_a_wall_without_suction_pulls_half_as_much():
-    """Water that moves away from its floor, without gravity: half of the pull is the floor's, and without it no wall particle has a
-    pressure below 0."""
+    """Water that moves away from its floor, without gravity: half of the pull is the floor's, and without it no wall
+    particle has a pressure below 0."""
     pull, least = [], []
     for suction in ("yes", "no"):
         lmp = start()
-        scene = FLOOR + "fix p all sph/pressure Tait 14.2857 1 7" + REST.format(volume="no").replace("0 -1 0", "0 0 0 suction " + suction)
-        run(lmp, "variable ratio index 1\n" + scene.replace("run 1 post no", "velocity water set 0 0.025 0 units box\nrun 0 post no"))
+        scene = (FLOOR + "fix p all sph/pressure Tait 14.2857 1 7" +
+                 REST.format(volume="no").replace("0 -1 0", "0 0 0 suction " + suction))
+        run(lmp, "variable ratio index 1\n" + scene.replace("run 1 post no",
+                                                            "velocity water set 0 0.025 0 units box\nrun 0 post no"))
         forces, pressures = [], []
         for _ in range(8):
             run(lmp, "run 4 post no")

@@ -35,8 +35,9 @@ VISCOUS = dict(terms="viscosity 1.0", integrator="nve/sph", drift=0, start=0)
 
 @pytest.mark.parametrize("drift", [0, 0.2])
 def test_gliding_faces_drive_the_flow(drift):
-    """Fluid at rest is taken along from the faces, mode k of the sawtooth RATE (y - 8) at the rate nu (2 pi k / H)^2. The Laplacian has
-    0.97 of the nominal viscosity at h = 2 spacings. With a drift of 0.2 particles change sides all the time: ten spacings."""
+    """Fluid at rest is taken along from the faces, mode k of the sawtooth RATE (y - 8) at the rate nu (2 pi k / H)^2.
+    The Laplacian has 0.97 of the nominal viscosity at h = 2 spacings. With a drift of 0.2 particles change sides all
+    the time: ten spacings."""
     lmp = start()
     try:
         run(lmp, SCENE.format(**dict(VISCOUS, drift=drift)) + "run 0")
@@ -45,11 +46,13 @@ def test_gliding_faces_drive_the_flow(drift):
             t = lmp.extract_global("ntimestep") * 0.02
             y = by_id(lmp, "x", 3)[:, 1]
             deviation = by_id(lmp, "v", 3)[:, 0] - RATE * (y - H / 2)
-            # The sawtooth moves with the fluid, and a uniform velocity comes with it that counts the particles that changed sides.
+            # The sawtooth moves with the fluid, and a uniform velocity comes with it that counts the particles that
+            # changed sides.
             deviation -= deviation.mean()
             wave = np.exp(-2j * np.pi * (y - drift * t) / H)
             amplitude = 2 * abs((deviation * wave).mean())
-            assert abs(amplitude - RATE * H / np.pi * np.exp(-0.97 * (2 * np.pi / H) ** 2 * t)) < 0.03 * RATE * H / np.pi
+            assert abs(amplitude - RATE * H / np.pi *
+                       np.exp(-0.97 * (2 * np.pi / H) ** 2 * t)) < 0.03 * RATE * H / np.pi
         assert np.abs(deviation).max() < 0.02 * RATE * H
     finally:
         lmp.close()
@@ -68,7 +71,8 @@ def test_stress_of_artificial_viscosity():
 
 @pytest.mark.ranks(2)
 def test_run_in_pieces_is_one_run(tmp_path):
-    """LAMMPS moves the box after the force of a step, so the first force of the next run sees ghosts one step farther: 4e-8 of the forces here."""
+    """LAMMPS moves the box after the force of a step, so the first force of the next run sees ghosts one step farther:
+    4e-8 of the forces here."""
     ends = []
     for name, runs in (("one", ["run 300"]), ("three", ["run 170", "run 0", "run 130"]), ("two ranks", ["run 300"])):
         folder = tmp_path / name

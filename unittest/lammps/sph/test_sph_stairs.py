@@ -1,5 +1,5 @@
-"""A bed that is cut out of a lattice turned by 1:3 has stairs. With slip and shift pliant water runs down it as down a smooth slope without
-friction, and stands on it."""
+"""A bed that is cut out of a lattice turned by 1:3 has stairs. With slip and shift pliant water runs down it as down a
+smooth slope without friction, and stands on it."""
 import numpy as np
 import pytest
 

@@ -1,4 +1,5 @@
-"""Forces, density rates and filtered densities of one instant, against the reference tables and an independent evaluation."""
+"""Forces, density rates and filtered densities of one instant, against the reference tables and an independent
+evaluation."""
 import numpy as np
 import pytest
 
@@ -55,7 +56,8 @@ def test_forces_against_tables(lmp, name, limit, artvisc, tenscorr, newton):
 @pytest.mark.parametrize("mu", [0.0, 0.7])
 @pytest.mark.parametrize("integrator", ["nve/sph", "sph"])
 def test_every_term_at_once(lmp, name, mu, integrator):
-    """Also what no table has: both corrections together, viscosity, the two-dimensional kernels, LAMMPS's own fix sph."""
+    """Also what no table has: both corrections together, viscosity, the two-dimensional kernels, LAMMPS's own fix
+    sph."""
     L = lmp()
     extra = "viscosity %g" % mu if mu else ""
     run(L, random_scene() + pair_commands(name, 1, 1, extra) + "\nfix move all %s\nrun 0" % integrator)
@@ -123,7 +125,8 @@ def test_diffusion_with_types_that_differ_only_in_the_speed_of_sound(lmp, artvis
 
 
 def test_density_rate_against_tables(lmp):
-    """The peer's density after a step of 1e-3 from the positions of its step 1, where velocities are those of the start."""
+    """The peer's density after a step of 1e-3 from the positions of its step 1, where velocities are those of the
+    start."""
     first, second = table("d_rand3d_cubicspline_m1_step1.csv"), table("d_rand3d_cubicspline_m1_step2.csv")
     expected = (second["rho"] - first["rho"]) / 1e-3
     L = lmp()
@@ -154,7 +157,8 @@ def test_summation(lmp, name, newton):
     assert off(by_id(L, "f", 3), F) <= 1e-12
 
 
-@pytest.mark.parametrize("words, state", [("absolut 7.5", lambda r: 7.5**2 * r), ("relativ 130 990", lambda r: 130 * (r - 990)),
+@pytest.mark.parametrize("words, state", [("absolut 7.5", lambda r: 7.5**2 * r),
+                                          ("relativ 130 990", lambda r: 130 * (r - 990)),
                                           ("relativ 130 990 55", lambda r: 130 * (r - 990) + 55),
                                           ("Tait 5e4 990 7", lambda r: 5e4 * ((r / 990) ** 7 - 1)),
                                           ("Tait 5e4 990 1.4 -55", lambda r: 5e4 * ((r / 990) ** 1.4 - 1) - 55)])
@@ -184,7 +188,8 @@ def test_virial_is_that_of_the_pair_forces(lmp, newton):
     L = lmp()
     run(L, random_scene(newton) + pair_commands("wendland", 1, 1, "viscosity 0.7") +
         "\nfix move all nve/sph\ncompute w all pressure NULL virial\ncompute a all stress/atom NULL virial\n"
-        "compute s all reduce sum c_a[1] c_a[2] c_a[3] c_a[4] c_a[5] c_a[6]\nthermo_style custom step c_w[1] c_w[4] c_s[1]\nrun 0")
+        "compute s all reduce sum c_a[1] c_a[2] c_a[3] c_a[4] c_a[5] c_a[6]\n"
+        "thermo_style custom step c_w[1] c_w[4] c_s[1]\nrun 0")
     x, F = by_id(L, "x", 3), by_id(L, "f", 3)
     volume = 0.165**3
     exact = [(x[:, a] * F[:, b]).sum() for a, b in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
@@ -215,7 +220,8 @@ def test_hybrid_overlay(lmp):
 def test_fix_adapt_reaches_the_coefficients(lmp):
     L = lmp()
     run(L, random_scene() + pair_commands("wendland", 1, 0) +
-        "\nfix move all nve/sph\nvariable c equal 40\nfix change all adapt 1 pair sph/artVisc/tensCorr c * * v_c\nrun 0")
+        "\nfix move all nve/sph\nvariable c equal 40\nfix change all adapt 1 pair sph/artVisc/tensCorr c * * v_c\n"
+        "run 0")
     changed = by_id(L, "f", 3)
     L = lmp()
     lines = pair_commands("wendland", 1, 0).split("\n")

@@ -8,14 +8,16 @@ from sph_tools import by_id, run, start
 
 @pytest.mark.parametrize("law, phi, w", [("brown_lawler", 0.2, 0.05), ("beetstra", 0.4, 0.02)])
 def test_a_suspension_settles_in_a_tank_with_the_flow_back(law, phi, w):
-    """From the floor to the surface, heavier than water by F(w): the grains of its middle fall at (1 - phi) w, with the law's slip w, as the water between
-    them rises by phi w. Over the 400 steps, in which sound of the beginning goes up and down twice: 5 %."""
+    """From the floor to the surface, heavier than water by F(w): the grains of its middle fall at (1 - phi) w, with the
+    law's slip w, as the water between them rises by phi w. Over the 400 steps, in which sound of the beginning goes up
+    and down twice: 5 %."""
     mu, g, c, dt, high = 0.1, 0.1, 8, 0.05, 16
     d = (phi * 6 / np.pi) ** (1 / 3)
     density = 1 + 3 * np.pi * mu * d * w * of_bed(law, w * d / mu, 1 - phi) / (g * np.pi / 6 * d**3)
     bed = f"lattice sc 1 origin 0.5 0.5 0.5\nregion bed block 0 5 0 5 0 {high} units box\ncreate_atoms 2 region bed"
     lmp = start()
-    text = scene((5, 5, high + 4), mu, c, dt, "drag " + law, bed, d, "p p f", density=density, gravity=f"0 0 {-g}", floor=4, before_fix=f"""
+    text = scene((5, 5, high + 4), mu, c, dt, "drag " + law, bed, d, "p p f", density=density, gravity=f"0 0 {-g}",
+                 floor=4, before_fix=f"""
     fix down all gravity {g} vector 0 0 -1
     fix bottom grains wall/gran hooke 30 NULL 1 NULL 0 0 zplane 0 NULL
     variable rho atom (1+7*{g}*{1 + phi * (density - 1)}*({high}-z)/{c * c})^(1/7)
@@ -24,7 +26,8 @@ def test_a_suspension_settles_in_a_tank_with_the_flow_back(law, phi, w):
     displace_atoms grains random 0.1 0.1 0.1 77 units box
     velocity grains set 0 0 {-(1 - phi) * w} units box
     velocity water set 0 0 {phi * w} units box""")
-    run(lmp, text.replace("zero 1", "gran/hooke 30 NULL 1 NULL 0 0").replace("pair_coeff * * zero", "pair_coeff * * none\npair_coeff 2 2 gran/hooke"))
+    run(lmp, text.replace("zero 1", "gran/hooke 30 NULL 1 NULL 0 0").replace(
+        "pair_coeff * * zero", "pair_coeff * * none\npair_coeff 2 2 gran/hooke"))
     run(lmp, "run 0")
     before = by_id(lmp, "x", 3)[:, 2]
     run(lmp, "run 400")
@@ -35,15 +38,17 @@ def test_a_suspension_settles_in_a_tank_with_the_flow_back(law, phi, w):
     assert abs(speed / ((1 - phi) * w) - 1) < 0.05, speed / ((1 - phi) * w)
 
 
-# --- Rayleigh and Taylor ---------------------------------------------------------------------------------------------------
+# --- Rayleigh and Taylor ----------------------------------------------------------------------------------------------
 
 EXCESS, MU = 0.5, 0.1    # of the suspension: density and weight over those of water; viscosity of both
 
 
 def theory(across, blurred, nodes=128):
-    """Growth rate and w(z) of the fastest mode exp(st) cos(kx), k = 2 pi/across, of a layer that fills the middle half of a periodic height: phi 0.1 of grains
-    that go with the water. Linear and viscous, with the excess q that w carries,
-      s (D^T R D + k^2 R) w = - mu (D^2 - k^2)^2 w - k^2 B q,    s q = - (d excess/dz) B w,    R = water's mass + B (grains' mass) B
+    """Growth rate and w(z) of the fastest mode exp(st) cos(kx), k = 2 pi/across, of a layer that fills the middle half
+    of a periodic height: phi 0.1 of grains that go with the water. Linear and viscous, with the excess q that w
+    carries,
+      s (D^T R D + k^2 R) w = - mu (D^2 - k^2)^2 w - k^2 B q,    s q = - (d excess/dz) B w,
+      R = water's mass + B (grains' mass) B
     blurred: B is the mean over Wendland's kernel, h = 2, by which grains move and bear on the water; else 1."""
     k, z, dz = 2 * np.pi / across, (np.arange(nodes) + 0.5) * across / nodes, across / nodes
     one = np.eye(nodes)
@@ -66,10 +71,13 @@ def theory(across, blurred, nodes=128):
 
 
 def suspension(across):
-    """That layer of the plugin, in a slice of 4 spacings, from lattices disturbed by 0.05. Drag is so stiff that grains go with the water, and what drives
-    both is the excess weight alone, so that the water is under next to no pressure, by which lattices resist shear."""
-    bed = f"lattice sc 1 origin 0.5 0.5 0.5\nregion bed block 0 {across} 0 4 {across // 4} {3 * across // 4} units box\ncreate_atoms 2 region bed"
-    return scene((across, 4, across), MU, 10, 0.04, "viscosity 100 own_flow no", bed, (0.6 / np.pi) ** (1 / 3), density=1 + EXCESS / 0.1, before_fix=f"""
+    """That layer of the plugin, in a slice of 4 spacings, from lattices disturbed by 0.05. Drag is so stiff that grains
+    go with the water, and what drives both is the excess weight alone, so that the water is under next to no pressure,
+    by which lattices resist shear."""
+    bed = (f"lattice sc 1 origin 0.5 0.5 0.5\nregion bed block 0 {across} 0 4 {across // 4} {3 * across // 4} units "
+           "box\ncreate_atoms 2 region bed")
+    return scene((across, 4, across), MU, 10, 0.04, "viscosity 100 own_flow no", bed, (0.6 / np.pi) ** (1 / 3),
+                 density=1 + EXCESS / 0.1, before_fix=f"""
     fix weight grains addforce 0 0 {-EXCESS}
     fix lift water addforce 0 0 {EXCESS / 2}
     displace_atoms all random 0.05 0.05 0.05 77 units box""")
@@ -99,7 +107,8 @@ def growth(script, across, time):
 
 
 def test_a_suspension_above_clear_water_becomes_unstable_as_theory_has_it():
-    """At a wavelength of 8 h that of linear theory with the kernel in it, 10 %. unittest/bench/grains_growth.py has 16 h, and two fluids."""
+    """At a wavelength of 8 h that of linear theory with the kernel in it, 10 %. unittest/bench/grains_growth.py has 16
+    h, and two fluids."""
     right = theory(16, True)[0]
     assert 0.8 < right / theory(16, False)[0] < 0.9
     assert abs(growth(suspension(16), 16, 9) / right - 1) < 0.1

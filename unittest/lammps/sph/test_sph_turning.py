@@ -1,5 +1,5 @@
-"""Walls that turn: water turns with its vessel; with viscosity laplacian the torque on walls is wrong, so it is refused beside them; with
-central it is right."""
+"""Walls that turn: water turns with its vessel; with viscosity laplacian the torque on walls is wrong, so it is refused
+beside them; with central it is right."""
 import numpy as np
 import pytest
 
@@ -55,7 +55,8 @@ timestep $(0.015/v_n)
 """
 TURNS = "fix turn shaft move rotate 0 0 0 0 0 1 %.15g" % (2 * np.pi)
 REST = "velocity shaft set 0 0 0"
-REFUSED = "Fix wall/adami/sph: step %s: the wall turns: beside it, 'viscosity mu laplacian' of pair_style sph/artVisc/tensCorr"
+REFUSED = ("Fix wall/adami/sph: step %s: the wall turns: beside it, 'viscosity mu laplacian' of pair_style "
+           "sph/artVisc/tensCorr")
 
 
 def scene(motion, form="laplacian shift yes", n=8, slip="", exclude=""):
@@ -79,8 +80,10 @@ def test_it_is_refused_when_the_wall_begins_to_turn():
     angle = "variable a equal (step>200)*((step-200)*dt)^2\nvariable da equal (step>200)*2*(step-200)*dt\n"
     late = angle + "\n".join((
         "variable r0x atom x", "variable r0y atom y", "fix at shaft store/state 0 v_r0x v_r0y",
-        "variable ux atom f_at[1]*(cos(v_a)-1)-f_at[2]*sin(v_a)", "variable uy atom f_at[1]*sin(v_a)+f_at[2]*(cos(v_a)-1)",
-        "variable sx atom -v_da*(f_at[1]*sin(v_a)+f_at[2]*cos(v_a))", "variable sy atom v_da*(f_at[1]*cos(v_a)-f_at[2]*sin(v_a))",
+        "variable ux atom f_at[1]*(cos(v_a)-1)-f_at[2]*sin(v_a)",
+        "variable uy atom f_at[1]*sin(v_a)+f_at[2]*(cos(v_a)-1)",
+        "variable sx atom -v_da*(f_at[1]*sin(v_a)+f_at[2]*cos(v_a))",
+        "variable sy atom v_da*(f_at[1]*cos(v_a)-f_at[2]*sin(v_a))",
         "fix turn shaft move variable v_ux v_uy NULL v_sx v_sy NULL"))
     said = message(scene(late) + "run 600")
     assert REFUSED.split("%s")[1] in said and int(said.split("step ")[1].split(":")[0]) > 200
@@ -164,8 +167,8 @@ timestep 0.0025
 
 @pytest.mark.parametrize("friction", ["viscosity 0.05 central", "artVisc 0.1 0 1e-4"])
 def test_water_turns_with_its_vessel(friction):
-    """A round vessel, 10 particles over the radius. When friction took the velocity of the water for that in the depth of the wall, the water came
-    to turn 6 % faster than the vessel."""
+    """A round vessel, 10 particles over the radius. When friction took the velocity of the water for that in the depth
+    of the wall, the water came to turn 6 % faster than the vessel."""
     lmp = start()
     run(lmp, VESSEL.format(friction=friction) + "run 800")
     x, v, water = by_id(lmp, "x", 3), by_id(lmp, "v", 3), by_id(lmp, "type") == 1

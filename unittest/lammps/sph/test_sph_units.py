@@ -1,13 +1,16 @@
-"""SPH takes force = mass x acceleration and pressure = mass / (length x time^2): unit systems where that does not hold are refused."""
+"""SPH takes force = mass x acceleration and pressure = mass / (length x time^2): unit systems where that does not hold
+are refused."""
 import numpy as np
 import pytest
 
 from sph_tools import by_id, pair_commands, random_scene, run, start
 from test_sph_input import message
 
-SCENE = random_scene().replace("units si", "units {}") + pair_commands("wendland", 1, 1, "viscosity 0.7") + "\nfix move all nve/sph\n"
-STYLES = ["sph/pressure absolut 3", "sph/density/continuity", "sph/density/summation", "sph/density/corr shepard every 3", "nve/sph",
-          "nve/sph/stationary", "wall/adami/sph", "check/timestep/sph 1 0.3"]
+SCENE = random_scene().replace("units si", "units {}") + pair_commands("wendland", 1, 1,
+                                                                       "viscosity 0.7") + "\nfix move all nve/sph\n"
+STYLES = ["sph/pressure absolut 3", "sph/density/continuity", "sph/density/summation",
+          "sph/density/corr shepard every 3", "nve/sph", "nve/sph/stationary", "wall/adami/sph",
+          "check/timestep/sph 1 0.3"]
 
 
 @pytest.mark.parametrize("units", ["lj", "si", "cgs", "micro", "nano"])

@@ -1,5 +1,6 @@
-"""What directions do on average and in fields: free decay, Langevin's function with films, shells and a wall, active diffusion, a dipole in a
-rotating field, a rod in a shear. Each against its closed form. Averages have a fixed seed and their standard error beside them."""
+"""What directions do on average and in fields: free decay, Langevin's function with films, shells and a wall, active
+diffusion, a dipole in a rotating field, a rod in a shear. Each against its closed form. Averages have a fixed seed and
+their standard error beside them."""
 import numpy as np
 import pytest
 
@@ -24,13 +25,14 @@ def lattice(n, spacing=4.0):
     return spacing * np.array([(i // side**2, i // side % side, i % side) for i in range(n)], float)
 
 
-# --- free decay ------------------------------------------------------------------------------------------------------------
+# --- free decay -------------------------------------------------------------------------------------------------------
 
 def test_directions_of_spheres_forget_as_exp_says(simulation, tmp_path):
     """<e(0).e(t)> = exp(-2 D t) at three times, within 1 % and four standard errors"""
     n, dt = 10000, 0.02
     e = unit(n, 5)
-    sim = dipoles(simulation, tmp_path, lattice(n), e, APART, dt / D, box=WIDE).commands(f"{MOVE} temperature {KT} 4711\nthermo 0")
+    sim = dipoles(simulation, tmp_path, lattice(n), e, APART, dt / D,
+                  box=WIDE).commands(f"{MOVE} temperature {KT} 4711\nthermo 0")
     for t in (0.1, 0.2, 0.4):
         sim.run(round(t / dt) if t == 0.1 else round(t / 2 / dt))
         dots = (directions(sim) * e).sum(axis=1)
@@ -44,18 +46,20 @@ def exponential(M):
     return vectors * np.exp(values) @ vectors.T
 
 
-@pytest.mark.parametrize("words, n, steps", [("clumps_only yes rigid_clumps yes", 4000, 20), ("rigid_clumps yes", 343, 12)])
+@pytest.mark.parametrize("words, n, steps", [("clumps_only yes rigid_clumps yes", 4000, 20),
+                                             ("rigid_clumps yes", 343, 12)])
 def test_axes_of_clumps_forget_as_their_diffusion_tensor_says(simulation, tmp_path, words, n, steps):
     """<R(t)> = exp(-(tr D - D) t) of a body that begins along its own axes: nine numbers. D by unit torques."""
     tensor = np.zeros((3, 3))
     for d in range(3):
-        sim = dipoles(simulation, tmp_path, L_OF_FOUR, (0, 0, 0), f"{POINTS} clumps_only yes rigid_clumps yes", 0.1, molecule=1)
+        sim = dipoles(simulation, tmp_path, L_OF_FOUR, (0, 0, 0), f"{POINTS} clumps_only yes rigid_clumps yes", 0.1,
+                      molecule=1)
         sim.commands(f"group one id 1\n{MOVE} torque one {' '.join(str(int(k == d)) for k in range(3))}").run(0)
         tensor[:, d] = KT * sim.atom("omega")[0]
     t = 0.5 / np.trace(tensor)
     x = (lattice(n, 60.0 if n < 1000 else 8.0)[:, None] + L_OF_FOUR).reshape(-1, 3)
-    sim = dipoles(simulation, tmp_path, x, (0, 0, 0), f"{POINTS} {words}", t / steps, molecule=np.repeat(np.arange(1, n + 1), 4),
-                  box=[(-100.0, 700.0)] * 3)
+    sim = dipoles(simulation, tmp_path, x, (0, 0, 0), f"{POINTS} {words}", t / steps,
+                  molecule=np.repeat(np.arange(1, n + 1), 4), box=[(-100.0, 700.0)] * 3)
     sim.commands(f"{MOVE} temperature {KT} 4711\nthermo 0").run(steps)
     R = rotation(sim.fix_rows("move")[::4, 9:13])
     errors = R.std(axis=0) / np.sqrt(n)
@@ -64,7 +68,7 @@ def test_axes_of_clumps_forget_as_their_diffusion_tensor_says(simulation, tmp_pa
     assert expected[0, 0] - expected[2, 2] > 4 * errors.max() or n < 1000
 
 
-# --- a field against noise -------------------------------------------------------------------------------------------------
+# --- a field against noise --------------------------------------------------------------------------------------------
 
 def in_equilibrium(n, kappa, seed=8):
     """Directions in a field along z"""
@@ -75,10 +79,12 @@ def in_equilibrium(n, kappa, seed=8):
 
 
 def cosine_in_field(simulation, tmp_path, x, kappa, words, options="", tau=0.02, burn=50, steps=1, **more):
-    """From equilibrium, which must stay: mean of cos after burn steps, over steps more, and an upper bound of its standard error"""
+    """From equilibrium, which must stay: mean of cos after burn steps, over steps more, and an upper bound of its
+    standard error"""
     sim = dipoles(simulation, tmp_path, x, in_equilibrium(len(x), kappa), words, tau / D, **more)
     sim.commands(f"fix field all efield 0 0 {kappa * KT!r}\n{MOVE} temperature {KT} 99 {options}\nthermo 0").run(burn)
-    sim.commands(f"compute m all property/atom muz\ncompute r all reduce ave c_m\nfix mean all ave/time 1 1 1 c_r ave running").run(steps)
+    sim.commands("compute m all property/atom muz\ncompute r all reduce ave c_m\n"
+                 "fix mean all ave/time 1 1 1 c_r ave running").run(steps)
     langevin = 1 / np.tanh(kappa) - 1 / kappa
     variance = 1 - 2 * langevin / kappa - langevin**2
     return sim, sim.lmp.extract_fix("mean", 0, 0), langevin, np.sqrt(variance / len(x) / max(1, tau * steps))
@@ -96,24 +102,28 @@ PAIRS = (lattice(4, 30.0)[:, None] + A * np.array([(0, 0, 0), (2.15, 0, 0)])).re
 FLOOR = A * np.array([(20.0 * (k % 4), 20.0 * (k // 4), 1.1) for k in range(16)])
 BESIDE = {"shells": (PAIRS, SHELLS, "pin all", {}), "films": (PAIRS, f"{POINTS} lubrication yes", "pin all", {}),
           "films between shells": (PAIRS[:4], f"{SHELLS} lubrication yes", "pin all", {}),
-          "a wall": (FLOOR, f"{POINTS} wall zlo 0 lubrication yes", "pin all", {"box": [(-40.0, 90.0)] * 2 + [(0.0, 40.0)]}),
+          "a wall": (FLOOR, f"{POINTS} wall zlo 0 lubrication yes", "pin all",
+                     {"box": [(-40.0, 90.0)] * 2 + [(0.0, 40.0)]}),
           "free shells": (lattice(8, 12.0), SHELLS, "", {})}
 
 
 @pytest.mark.parametrize("kappa", [0.5, 2.0, 8.0])
 @pytest.mark.parametrize("beside", BESIDE)
 def test_neighbours_films_and_walls_leave_langevins_function_alone(simulation, tmp_path, beside, kappa):
-    """Whatever the mobility, and its drift: the error is the bound of a mean over time, whose correlations last 1/(2 D) or less."""
+    """Whatever the mobility, and its drift: the error is the bound of a mean over time, whose correlations last 1/(2 D)
+    or less."""
     x, words, options, more = BESIDE[beside]
-    _, cosine, langevin, error = cosine_in_field(simulation, tmp_path, x, kappa, words, options + " noise_tolerance 0.1",
-                                                 tau=0.05 if kappa == 8.0 else 0.1, burn=10, steps=300, **more)
+    _, cosine, langevin, error = cosine_in_field(simulation, tmp_path, x, kappa, words,
+                                                 options + " noise_tolerance 0.1", tau=0.05 if kappa == 8.0 else 0.1,
+                                                 burn=10, steps=300, **more)
     assert cosine == pytest.approx(langevin, abs=3 * error)
 
 
-# --- active particles ------------------------------------------------------------------------------------------------------
+# --- active particles -------------------------------------------------------------------------------------------------
 
 def test_active_particles_diffuse_by_their_push(simulation, tmp_path):
-    """<dx^2> = 6 D_t t + v^2/(2 D^2) (2 D t - 1 + exp(-2 D t)), that is D_t + v^2/(6 D) in the long run, within 2 %; and the speed is v."""
+    """<dx^2> = 6 D_t t + v^2/(2 D^2) (2 D t - 1 + exp(-2 D t)), that is D_t + v^2/(6 D) in the long run, within 2 %;
+    and the speed is v."""
     n, dt, t, v = 8000, 0.04, 2.0, 3.0 * A * D
     e = unit(n, 6)
     sim = dipoles(simulation, tmp_path, lattice(n), e, APART, dt / D, box=WIDE)
@@ -130,19 +140,21 @@ def test_active_particles_diffuse_by_their_push(simulation, tmp_path):
 
 def test_a_pushed_pair_is_as_dense_algebra_says(simulation, tmp_path):
     x, e, push = A * np.array([(0, 0, 0), (2.3, 0.4, 0.1)]), unit(2, 7), 2.5
-    sim = dipoles(simulation, tmp_path, x, e, POINTS, 0.01).commands(f"fix push all propel/self dipole {push}\n{MOVE}").run(0)
+    sim = dipoles(simulation, tmp_path, x, e, POINTS,
+                  0.01).commands(f"fix push all propel/self dipole {push}\n{MOVE}").run(0)
     U = model.mobility(x, np.full(2, A), ETA, rotation=True) @ np.hstack([push * e, np.zeros((2, 3))]).ravel()
     assert np.abs(np.hstack([sim.v, sim.atom("omega")]).ravel() - U).max() < 1e-10 * np.abs(U).max()
 
 
-# --- fields and flows without noise ----------------------------------------------------------------------------------------
+# --- fields and flows without noise -----------------------------------------------------------------------------------
 
 OMEGA = 0.7
 
 
 def in_rotating_field(simulation, tmp_path, angle, words, scheme, steps):
     """The angle after the time 2, of a dipole in a field along x that rotates about z, mu E = 8 pi eta a^3"""
-    sim = dipoles(simulation, tmp_path, CENTRE, (np.cos(angle), np.sin(angle), 0), f"{words} relative_tolerance 1e-12", 2.0 / steps)
+    sim = dipoles(simulation, tmp_path, CENTRE, (np.cos(angle), np.sin(angle), 0), f"{words} relative_tolerance 1e-12",
+                  2.0 / steps)
     sim.commands(f"variable ex equal {SPIN!r}*cos({OMEGA}*step*dt)\nvariable ey equal {SPIN!r}*sin({OMEGA}*step*dt)\n"
                  f"fix field all efield v_ex v_ey 0\n{MOVE} scheme {scheme}").run(steps)
     return np.arctan2(*directions(sim)[0, 1::-1])
@@ -176,7 +188,8 @@ def test_a_dipole_turns_towards_a_rotating_field(simulation, tmp_path, scheme, o
 
 @pytest.mark.parametrize("scheme, order", [("euler", 1), ("ab2", 2), ("midpoint", 2)])
 def test_the_axis_of_a_rod_goes_round_as_jeffery_says(simulation, tmp_path, scheme, order):
-    """A dipole along a rod of five spheres in a shear: tan(angle) = r tan(t rate/(r + 1/r)), r from how fast it turns across the flow"""
+    """A dipole along a rod of five spheres in a shear: tan(angle) = r tan(t rate/(r + 1/r)), r from how fast it turns
+    across the flow"""
     rod, rate, t = A * np.array([(0, 0, 2.0 * k) for k in range(5)]), 0.8, 4.0
     words = f"{POINTS} rigid_clumps yes relative_tolerance 1e-13 fluid_velocity v_u 0 0"
     def run(steps):
@@ -193,14 +206,15 @@ def test_the_axis_of_a_rod_goes_round_as_jeffery_says(simulation, tmp_path, sche
     assert order == 1 or errors[2] < 1e-6
 
 
-# --- two swimmers ----------------------------------------------------------------------------------------------------------
+# --- two swimmers -----------------------------------------------------------------------------------------------------
 
 def test_two_swimmers_are_as_dense_algebra_of_their_points_says(simulation, tmp_path):
     """The points of a lone swimmer, its slip there, and the tensor: written down anew, without the one-body addition"""
     x, e, B1 = A * np.array([(0, 0, 0), (2.4, 0.5, -0.3)]), unit(2, 9), 1.1
     sim = swim(simulation, tmp_path, x, e, shells(12, "one_body no"), f"squirm all {B1} 0").run(0)
     phi, R, b = 0.5 * (1 + np.sqrt(5)), 0.6563217307, 0.5622830568
-    ico = np.array([p for s in (1, -1) for f in (phi, -phi) for p in ((0, s, f), (s, f, 0), (f, 0, s))]) / np.sqrt(1 + phi**2)
+    ico = np.array([p for s in (1, -1) for f in (phi, -phi) for p in ((0, s, f), (s, f, 0), (f, 0, s))]) / np.sqrt(
+        1 + phi**2)
     turn = rotation(np.array([(1, 2, 3, 4)]) / np.sqrt(30))[0]
     r = A * R * ico @ turn.T
     points = (x[:, None] + r).reshape(-1, 3)
@@ -213,7 +227,8 @@ def test_two_swimmers_are_as_dense_algebra_of_their_points_says(simulation, tmp_
             K[at:at + 3, 6 * i + 3:6 * i + 6] = np.cross(np.eye(3), r[k]).T
     def slip(direction, uniform):
         unit_r = r / A
-        g = 0.1 * (2 * (unit_r**2).sum(axis=1)[:, None] * direction - unit_r * (unit_r @ direction)[:, None]) + (b**2 - 1) / 6 * direction
+        g = 0.1 * (2 * (unit_r**2).sum(axis=1)[:, None] * direction - unit_r * (unit_r @ direction)[:, None]) + (
+            b**2 - 1) / 6 * direction
         return -2 / 3 * direction - 10 * (g - uniform * direction)
     lone = np.linalg.inv(M[:36, :36])
     uniform = (lone @ (slip(e[0], 0.0) + 2 / 3 * e[0]).ravel()).reshape(12, 3).sum(axis=0) @ e[0] / -10 / DRAG

@@ -38,7 +38,8 @@ AT_THE_COMMAND = [
     ("cut_off_distance -inf visc 1.3", ["keyword cut_off_distance: '-inf' is not a finite number"]),
     ("cut_off_distance inf visc 1.3 relative_tolerance 0", ["keyword relative_tolerance: '0' must be > 0"]),
     ("cut_off_distance inf visc 1.3 relative_tolerance -1e-3", ["keyword relative_tolerance: '-1e-3' must be > 0"]),
-    ("cut_off_distance inf visc 1.3 relative_tolerance nan", ["keyword relative_tolerance: 'nan' is not a finite number"]),
+    ("cut_off_distance inf visc 1.3 relative_tolerance nan",
+     ["keyword relative_tolerance: 'nan' is not a finite number"]),
     ("cut_off_distance inf visc 1.3 update_every 0", ["keyword update_every: '0' must be >= 1"]),
     ("cut_off_distance inf visc 1.3 update_every -3", ["keyword update_every: '-3' must be >= 1"]),
     ("cut_off_distance inf visc 1.3 update_every 2.5", ["keyword update_every: '2.5' is not an integer"]),
@@ -51,7 +52,8 @@ AT_THE_COMMAND = [
     ("cut_off_distance inf visc 1.3 tensor stokeslet", ["keyword tensor: 'stokeslet' is none of: rpy, oseen"]),
     ("cut_off_distance inf visc 1.3 clumps_only maybe", ["keyword clumps_only: 'maybe' is none of: no, yes"]),
     ("cut_off_distance inf visc 1.3 add_force on", ["keyword add_force: 'on' is none of: no, yes"]),
-    ("cut_off_distance inf visc 1.3 viscosity 2", ["unknown keyword 'viscosity'", "those that there are: cut_off_distance, update_every"]),
+    ("cut_off_distance inf visc 1.3 viscosity 2",
+     ["unknown keyword 'viscosity'", "those that there are: cut_off_distance, update_every"]),
     ("cut_off_distance inf visc 1.3 temperature 1 77",
      ["unknown keyword 'temperature': it is a keyword of fix stokes_dynamics/overdamped"]),
     ("cut_off_distance inf visc 1.3 2.0", ["unknown keyword '2.0'"]),
@@ -71,34 +73,45 @@ AT_THE_COMMAND += [("cut_off_distance 0x10 visc 1.3", ["keyword cut_off_distance
                    ("cut_off_distance inf visc 1.3 visc 1.3", ["keyword visc: given twice"]),
                    ("clumps_only yes visc 1.3 region nowhere clumps_only yes", ["keyword clumps_only: given twice"])]
 AT_THE_COMMAND += [(f"{cut} visc 1.3 {words}", [expected]) for cut, words, expected in (
-    ("cut_off_distance 9", "rotation yes lubrication yes", "keyword lubrication: yes requires cut_off_distance inf and clumps_only no"),
-    ("clumps_only yes", "rotation yes lubrication yes", "keyword lubrication: yes requires cut_off_distance inf and clumps_only no"),
+    ("cut_off_distance 9", "rotation yes lubrication yes",
+     "keyword lubrication: yes requires cut_off_distance inf and clumps_only no"),
+    ("clumps_only yes", "rotation yes lubrication yes",
+     "keyword lubrication: yes requires cut_off_distance inf and clumps_only no"),
     ("cut_off_distance inf", "lubrication yes", "keyword lubrication: yes requires rotation yes"),
     ("cut_off_distance inf", "multiblob 13", "keyword multiblob: '13' must be 1, 12, 42 or 162"),
-    ("cut_off_distance inf", "multiblob 12 multiblob_most 100", "keyword multiblob_most: '100' must be 12, 42, 162 or 642"),
-    ("cut_off_distance inf", "multiblob 42 multiblob_most 12", "keyword multiblob_most: '12' must not be less than multiblob, 42"),
+    ("cut_off_distance inf", "multiblob 12 multiblob_most 100",
+     "keyword multiblob_most: '100' must be 12, 42, 162 or 642"),
+    ("cut_off_distance inf", "multiblob 42 multiblob_most 12",
+     "keyword multiblob_most: '12' must not be less than multiblob, 42"),
     ("cut_off_distance inf", "multiblob_most 42", "keyword multiblob_most requires multiblob"),
     ("cut_off_distance 9", "multiblob 12", "keyword multiblob: '12' requires cut_off_distance inf and clumps_only no"),
     ("clumps_only yes", "multiblob 12", "keyword multiblob: '12' requires cut_off_distance inf and clumps_only no"),
-    ("cut_off_distance inf", "multiblob 12 tensor oseen", "keyword multiblob is not available with tensor oseen: use tensor rpy"),
+    ("cut_off_distance inf", "multiblob 12 tensor oseen",
+     "keyword multiblob is not available with tensor oseen: use tensor rpy"),
     ("cut_off_distance inf", "multiblob 12 rigid_clumps yes shell 12",
      "keyword multiblob: the spheres of rigid clumps are shells of points already; leave out shell"),
-    ("cut_off_distance inf", "multiblob 42 rotation no", "keyword multiblob: shells of points always rotate; leave out rotation no"),
-    ("cut_off_distance inf", "multiblob 12 algorithm 2 precondition sparse", "keyword multiblob has its own preconditioner"),
+    ("cut_off_distance inf", "multiblob 42 rotation no",
+     "keyword multiblob: shells of points always rotate; leave out rotation no"),
+    ("cut_off_distance inf", "multiblob 12 algorithm 2 precondition sparse",
+     "keyword multiblob has its own preconditioner"),
     ("cut_off_distance inf", "multiblob 12 lubrication yes lubrication_range 3",
      "keyword lubrication_range: '3' must be <= 2 with multiblob"),
     ("cut_off_distance inf", "one_body no", "keyword one_body requires multiblob 12 or 42"),
     ("cut_off_distance inf", "lubrication on", "keyword lubrication: 'on' is none of: no, yes"),
     ("cut_off_distance inf", "rotation yes lubrication_gap 1e-3", "keyword lubrication_gap requires lubrication yes"),
-    ("cut_off_distance inf", "rotation yes lubrication no lubrication_range 1", "keyword lubrication_range requires lubrication yes"),
-    ("cut_off_distance inf", "rotation yes lubrication yes lubrication_gap 1e-7", "keyword lubrication_gap: '1e-7' must be >= 1e-6"),
-    ("cut_off_distance inf", "rotation yes lubrication yes lubrication_gap 0", "keyword lubrication_gap: '0' must be > 0"),
-    ("cut_off_distance inf", "rotation yes lubrication yes lubrication_range 8.5", "keyword lubrication_range: '8.5' must be <= 8"),
+    ("cut_off_distance inf", "rotation yes lubrication no lubrication_range 1",
+     "keyword lubrication_range requires lubrication yes"),
+    ("cut_off_distance inf", "rotation yes lubrication yes lubrication_gap 1e-7",
+     "keyword lubrication_gap: '1e-7' must be >= 1e-6"),
+    ("cut_off_distance inf", "rotation yes lubrication yes lubrication_gap 0",
+     "keyword lubrication_gap: '0' must be > 0"),
+    ("cut_off_distance inf", "rotation yes lubrication yes lubrication_range 8.5",
+     "keyword lubrication_range: '8.5' must be <= 8"),
     ("cut_off_distance inf", "rotation yes lubrication yes lubrication_gap 0.1 lubrication_range 0.1",
      "keyword lubrication_gap: '0.1' must be below lubrication_range, 0.1"))]
 AT_THE_COMMAND += [(keyword, [f"keyword {keyword}: value missing"])
-                   for keyword in ("cut_off_distance", "update_every", "clumps_only", "visc", "region", "group", "add_force",
-                                   "relative_tolerance",
+                   for keyword in ("cut_off_distance", "update_every", "clumps_only", "visc", "region", "group",
+                                   "add_force", "relative_tolerance",
                                    "max_iter", "algorithm", "fluid_velocity", "tensor")]
 
 
@@ -127,7 +140,8 @@ AT_THE_RUN = [
     ("group nobody", "", ["keyword group: group 'nobody' does not exist"]),
     ("visc v_none", "", ["keyword visc: variable 'none' does not exist"]),
     ("visc v_words", "variable words string abc", ["keyword visc: variable 'words' is neither equal nor atom style"]),
-    ("visc v_numbers", "variable numbers index 1 2 3", ["keyword visc: variable 'numbers' is neither equal nor atom style"]),
+    ("visc v_numbers", "variable numbers index 1 2 3",
+     ["keyword visc: variable 'numbers' is neither equal nor atom style"]),
     ("fluid_velocity 0 v_none 0", "", ["keyword fluid_velocity: variable 'none' does not exist"]),
     ("fluid_velocity 0 0 v_words", "variable words string abc",
      ["keyword fluid_velocity: variable 'words' is neither equal nor atom style"]),
@@ -167,8 +181,10 @@ def test_cut_off_of_very_many_periodic_boxes(tmp_path, words, ranks):
 def test_cut_off_far_beyond_an_open_box_is_none(tmp_path, cutoff, ranks):
     forces = []
     for distance in (cutoff, "inf"):
-        lines = input_lines(three(), f"cut_off_distance {distance} visc 1.3 algorithm 2 relative_tolerance 1e-12", tmp_path / "data", box=BOX)
-        lmp(tmp_path, lines + dump_lines(tmp_path / "dump", columns="f_drag[1] f_drag[2] f_drag[3]") + ["run 0"], ranks=ranks)
+        lines = input_lines(three(), f"cut_off_distance {distance} visc 1.3 algorithm 2 relative_tolerance 1e-12",
+                            tmp_path / "data", box=BOX)
+        lmp(tmp_path, lines + dump_lines(tmp_path / "dump", columns="f_drag[1] f_drag[2] f_drag[3]") + ["run 0"],
+            ranks=ranks)
         forces.append(read_dump(tmp_path / "dump")[0][1])
     assert abs(forces[0]).max() > 0.1 and abs(forces[0] - forces[1]).max() < 1e-11 * abs(forces[1]).max()
 
@@ -217,8 +233,9 @@ def test_clumps_without_molecule_ids(simulation, words, keyword):
 
 
 def test_spheres_without_ids(simulation):
-    sim = simulation().commands(["atom_style sphere", "atom_modify id no", "boundary f f f", "plugin load stokesdynplugin.so",
-                                 "region b block -9 9 -9 9 -9 9", "create_box 1 b", "create_atoms 1 single 0 0 0",
+    sim = simulation().commands(["atom_style sphere", "atom_modify id no", "boundary f f f",
+                                 "plugin load stokesdynplugin.so", "region b block -9 9 -9 9 -9 9", "create_box 1 b",
+                                 "create_atoms 1 single 0 0 0",
                                  "pair_style stokes_dynamics cut_off_distance inf visc 1.3", "pair_coeff * *"])
     with pytest.raises(LammpsError, match=f"{PAIR} requires atom IDs"):
         sim.run()
@@ -247,9 +264,10 @@ def test_twice_in_a_hybrid_style(simulation):
         sim.run()
 
 
-# --- the fix -----------------------------------------------------------------------------------------------------------
+# --- the fix ----------------------------------------------------------------------------------------------------------
 
-AT_THE_FIX = [("apply", ["keyword apply: value missing"]), ("apply maybe", ["keyword apply: 'maybe' is none of: no, yes"]),
+AT_THE_FIX = [("apply", ["keyword apply: value missing"]),
+              ("apply maybe", ["keyword apply: 'maybe' is none of: no, yes"]),
               ("report yes", ["unknown keyword 'report'"])]
 
 
@@ -287,7 +305,7 @@ def test_two_fixes_of_which_one_applies_are_no_error(simulation):
     assert largest_difference(sim.f, model.forces(three(), 1.3)) < 1e-10
 
 
-# --- numbers that go bad during a run ------------------------------------------------------------------------------------
+# --- numbers that go bad during a run ---------------------------------------------------------------------------------
 
 MODES = {"all": "cut_off_distance inf", "list": "cut_off_distance 5", "clump": "clumps_only yes"}
 
@@ -298,22 +316,24 @@ MODES = {"all": "cut_off_distance inf", "list": "cut_off_distance 5", "clump": "
                                        ("x", "its position is not a finite number")])
 @pytest.mark.parametrize("value", [float("nan"), float("inf")], ids=["nan", "inf"])
 def test_position_or_velocity_gone_bad_between_runs(simulation, mode, what, text, value):
-    sim = simulation(three(), f"{MODES[mode]} visc 1.3 algorithm 2", box=BOX, comm="comm_modify cutoff 6", dt=1e-3).run(2)
+    sim = simulation(three(), f"{MODES[mode]} visc 1.3 algorithm 2", box=BOX, comm="comm_modify cutoff 6",
+                     dt=1e-3).run(2)
     sim.set(what, 2, [0.1, value, 0.2])
     with pytest.raises(LammpsError) as error:
         sim.run(1)
     # LAMMPS may find a bad position first, when it sorts atoms into the box
-    assert text in str(error.value) and "atom 2" in str(error.value) or (what == "x" and "Non-numeric" in str(error.value))
+    assert (text in str(error.value) and "atom 2" in str(error.value) or
+            (what == "x" and "Non-numeric" in str(error.value)))
 
 
 @pytest.mark.hard_case("NaN or infinite position or velocity")
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_velocity_that_becomes_nan_within_a_run_stops_it_on_all_ranks(tmp_path, mode, ranks):
-    lines = input_lines(three(), f"{MODES[mode]} visc 1.3 algorithm 2", tmp_path / "data", box=BOX, comm="comm_modify cutoff 6",
-                        dt=1e-3)
-    lines += ["fix move all nve/sphere", "variable bad atom 0*exp(999*(id==2)*(step>5))", "fix kick all addforce v_bad 0 0",
-              "run 20"]
+    lines = input_lines(three(), f"{MODES[mode]} visc 1.3 algorithm 2", tmp_path / "data", box=BOX,
+                        comm="comm_modify cutoff 6", dt=1e-3)
+    lines += ["fix move all nve/sphere", "variable bad atom 0*exp(999*(id==2)*(step>5))",
+              "fix kick all addforce v_bad 0 0", "run 20"]
     ended = lmp(tmp_path, lines, ranks=ranks, succeed=False)
     assert ended.code != 0
     # which spoils the position in the same step, too
@@ -322,8 +342,9 @@ def test_velocity_that_becomes_nan_within_a_run_stops_it_on_all_ranks(tmp_path, 
 
 @pytest.mark.parametrize("mode", MODES)
 def test_fluid_velocity_that_becomes_nan_on_one_rank_stops_all(tmp_path, mode):
-    lines = input_lines(three(), f"{MODES[mode]} visc 1.3 algorithm 2 fluid_velocity v_u 0 0", tmp_path / "data", box=BOX,
-                        comm="comm_modify cutoff 6", before_pair="variable u atom 0*exp(999*(id==3)*(step>=5))", dt=1e-3)
+    lines = input_lines(three(), f"{MODES[mode]} visc 1.3 algorithm 2 fluid_velocity v_u 0 0", tmp_path / "data",
+                        box=BOX, comm="comm_modify cutoff 6",
+                        before_pair="variable u atom 0*exp(999*(id==3)*(step>=5))", dt=1e-3)
     ended = lmp(tmp_path, lines + ["fix move all nve/sphere", "run 20"], ranks=2, succeed=False)
     assert ended.code != 0
     assert "step 5, atom 3: keyword fluid_velocity: the fluid velocity there is not a finite number" in ended.log
@@ -339,7 +360,8 @@ def test_failed_solve_stops_all_ranks(tmp_path, words, text):
     assert ended.code != 0 and f"{PAIR}: step 0: algorithm" in ended.log and text in ended.log
 
 
-@pytest.mark.parametrize("words", ["cut_off_distance inf visc -1", "cut_off_distance inf visc 1.3 algorithm 3", "visc 1.3"])
+@pytest.mark.parametrize("words", ["cut_off_distance inf visc -1", "cut_off_distance inf visc 1.3 algorithm 3",
+                                   "visc 1.3"])
 def test_bad_command_stops_all_ranks(tmp_path, words):
     lines = input_lines(three(), words, tmp_path / "data", box=BOX)
     ended = lmp(tmp_path, lines + ["run 0"], ranks=2, succeed=False)

@@ -51,16 +51,19 @@ def test_a_deleted_memory_is_a_clean_error_and_the_next_whole_run_goes_on(simula
     drag = sim.drag
     sim.command("unfix STOKES_DYNAMICS_STATE")
     assert sim.fix_vector()[5] == 0.0
-    with pytest.raises(LammpsError, match="Pair style stokes_dynamics: its internal fix STOKES_DYNAMICS_STATE has been deleted"):
+    with pytest.raises(LammpsError,
+                       match="Pair style stokes_dynamics: its internal fix STOKES_DYNAMICS_STATE has been deleted"):
         sim.command("run 1 pre no")
     assert np.array_equal(sim.run().drag, drag)
 
 
 @pytest.mark.parametrize("algorithm", [1, 2])
 def test_a_fix_of_the_user_with_the_id_of_the_memory_is_a_clean_error(tmp_path, algorithm):
-    lines = input_lines(four(), f"cut_off_distance inf visc 1.3 algorithm {algorithm}", tmp_path / "data", box=[(-9, 9)] * 3)
+    lines = input_lines(four(), f"cut_off_distance inf visc 1.3 algorithm {algorithm}", tmp_path / "data",
+                        box=[(-9, 9)] * 3)
     ended = lmp(tmp_path, lines + ["fix STOKES_DYNAMICS_STATE all nve", "run 1"], succeed=False)
-    assert ended.code == 1 and "the fix ID STOKES_DYNAMICS_STATE is taken by a fix of style nve" in " ".join(ended.text.split())
+    assert ended.code == 1 and "the fix ID STOKES_DYNAMICS_STATE is taken by a fix of style nve" in " ".join(
+        ended.text.split())
 
 
 def test_a_fix_of_the_user_with_the_id_of_the_last_fix_stays_and_is_a_clean_error(simulation):
@@ -77,7 +80,8 @@ def test_a_fix_of_the_user_with_that_id_after_a_run(tmp_path):
     assert ended.code == 1 and "is taken by a fix of style nve" in " ".join(ended.text.split())
 
 
-@pytest.mark.parametrize("style", ["clumps_only yes visc 1.3 algorithm 2", "cut_off_distance 3 visc 1.3 taper wendland algorithm 2",
+@pytest.mark.parametrize("style", ["clumps_only yes visc 1.3 algorithm 2",
+                                   "cut_off_distance 3 visc 1.3 taper wendland algorithm 2",
                                    "cut_off_distance 3 visc 1.3 taper wendland algorithm 2 precondition clump",
                                    "clumps_only yes rigid_clumps auto visc 1.3 algorithm 2"])
 @pytest.mark.parametrize("ranks", [1, 2])
@@ -87,16 +91,19 @@ def test_a_run_that_blows_up_in_a_periodic_box_ends_with_atom_and_step(tmp_path,
     x = np.array([[i, j, k] for i in (-6, 6) for j in (-6, 6) for k in (-6, 6)], float)
     x = np.vstack([x, x + (1.9, 0.1, 0)])
     spheres = Spheres(x, 0.7, rng.normal(size=(16, 3)), molecule=np.tile(np.arange(1, 9), 2))
-    lines = input_lines(spheres, style, tmp_path / "data", boundary="p p p", box=[(-12, 12)] * 3, comm="comm_modify cutoff 11", dt=10.0)
+    lines = input_lines(spheres, style, tmp_path / "data", boundary="p p p", box=[(-12, 12)] * 3,
+                        comm="comm_modify cutoff 11", dt=10.0)
     ended = lmp(tmp_path, lines + ["fix move all nve/sphere", "thermo 1000", "run 400"], ranks=ranks, succeed=False)
     assert ended.code != 0 and "ERROR" in ended.text
 
 
 def test_spheres_far_outside_of_a_periodic_box_are_named(simulation):
-    sim = simulation(four(), "clumps_only yes visc 1.3", boundary="p p p", box=[(-9, 9)] * 3).commands("fix move all nve/sphere")
+    sim = simulation(four(), "clumps_only yes visc 1.3", boundary="p p p",
+                     box=[(-9, 9)] * 3).commands("fix move all nve/sphere")
     sim.commands("neigh_modify delay 100").run(1)    # LAMMPS of 2025 loses such an atom when it re-neighbours
     sim.set("x", 3, (1e22, 0.0, 0.0))
-    with pytest.raises(LammpsError, match="step 2, atom 3: its position is more than a box length outside of the periodic box"):
+    with pytest.raises(LammpsError,
+                       match="step 2, atom 3: its position is more than a box length outside of the periodic box"):
         sim.command("run 1 pre no")
 
 
@@ -108,12 +115,13 @@ def test_a_tolerance_that_no_force_at_all_satisfies_is_refused(simulation, toler
 
 def test_a_loose_tolerance_is_warned_of(tmp_path):
     lines = input_lines(four(), STYLE + " relative_tolerance 0.5", tmp_path / "data", box=[(-9, 9)] * 3)
-    assert "keyword relative_tolerance: '0.5' allows errors of the forces of more than a tenth" in " ".join(lmp(tmp_path, lines).text.split())
+    assert "keyword relative_tolerance: '0.5' allows errors of the forces of more than a tenth" in " ".join(
+        lmp(tmp_path, lines).text.split())
     lines = input_lines(four(), STYLE + " relative_tolerance 0.1", tmp_path / "data", box=[(-9, 9)] * 3)
     assert "relative_tolerance" not in lmp(tmp_path, lines).log.split("pair_coeff")[1]
 
 
-# --- spheres that take no part -----------------------------------------------------------------------------------------------
+# --- spheres that take no part ----------------------------------------------------------------------------------------
 
 PROGRAM = """
 import sys
@@ -128,8 +136,9 @@ print(lmp.get_natoms(), 1024 * int(resident[0].split()[1]))
 
 def memory_of(tmp_path, style):
     """Atoms and resident memory of a process that has run a step, 1000 spheres of which are in the group part."""
-    lines = ["units lj", "atom_style sphere", "boundary f f f", "plugin load stokesdynplugin.so", "atom_modify sort 0 0", "lattice sc 0.04",
-             "region b block 0 200 0 100 0 10", "create_box 1 b", "create_atoms 1 box", "set group all diameter 1 density 1",
+    lines = ["units lj", "atom_style sphere", "boundary f f f", "plugin load stokesdynplugin.so",
+             "atom_modify sort 0 0", "lattice sc 0.04", "region b block 0 200 0 100 0 10", "create_box 1 b",
+             "create_atoms 1 box", "set group all diameter 1 density 1",
              "velocity all set 0.1 0 0", "group part id 1:1000", "neighbor 0.3 bin"] + style + ["run 1"]
     (tmp_path / "in.memory").write_text("\n".join(lines) + "\n")
     words = [sys.executable, "-c", PROGRAM, str(tmp_path / "in.memory")]
@@ -139,7 +148,8 @@ def memory_of(tmp_path, style):
 
 @pytest.mark.parametrize("fix", [False, True])
 def test_a_bystander_costs_less_than_64_bytes(tmp_path, fix):
-    style = ["pair_style stokes_dynamics cut_off_distance inf visc 1.3 algorithm 2 group part add_force " + ("no" if fix else "yes"),
+    style = ["pair_style stokes_dynamics cut_off_distance inf visc 1.3 algorithm 2 group part add_force " +
+             ("no" if fix else "yes"),
              "pair_coeff * *"] + (["fix drag all stokes_dynamics"] if fix else [])
     n, with_style = memory_of(tmp_path, style)
     n, without = memory_of(tmp_path, ["comm_modify cutoff 1.3"])

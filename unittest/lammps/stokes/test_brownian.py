@@ -1,5 +1,6 @@
-"""fix stokes_dynamics/overdamped with a temperature: covariance of one step against the mobility, Boltzmann's distribution in traps and
-bonds, one run on several ranks and in pieces, and what is refused. Bounds are four standard deviations of the sample."""
+"""fix stokes_dynamics/overdamped with a temperature: covariance of one step against the mobility, Boltzmann's
+distribution in traps and bonds, one run on several ranks and in pieces, and what is refused. Bounds are four standard
+deviations of the sample."""
 import os
 import re
 
@@ -7,15 +8,16 @@ import numpy as np
 import pytest
 
 import model
-from brownian import (A, END, ETA, KT, L_OF_FOUR, MOVE, P6, SHORT, TRIO, UNIT, check_covariance, check_heights, check_pieces, check_ranks, copies,
-                      end, in_a_plane, in_clumps, noise, scattered, script, steps_of)
+from brownian import (A, END, ETA, KT, L_OF_FOUR, MOVE, P6, SHORT, TRIO, UNIT, check_covariance, check_heights,
+                      check_pieces, check_ranks, copies, end, in_a_plane, in_clumps, noise, scattered, script, steps_of)
 from system import LammpsError, Spheres, input_lines, lmp
 
-# --- one step -------------------------------------------------------------------------------------------------------------
+# --- one step ---------------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("rotation", ["no", "yes"])
 def test_covariance_of_a_step_is_the_mobility(simulation, rotation):
-    sim = noise(simulation(copies(TRIO, 2000), f"cut_off_distance inf visc {ETA} clumps_only yes rotation {rotation}", fix=False, dt=SHORT))
+    sim = noise(simulation(copies(TRIO, 2000), f"cut_off_distance inf visc {ETA} clumps_only yes rotation {rotation}",
+                           fix=False, dt=SHORT))
     d = steps_of(sim, 10).reshape(-1, 9)
     M = model.mobility(TRIO, np.full(3, A), ETA)
     assert M[0] * UNIT == pytest.approx([1, 0, 0, 0.536, 0, 0, 0.352475, 0.032310, 0.008429], abs=1e-6)
@@ -23,7 +25,8 @@ def test_covariance_of_a_step_is_the_mobility(simulation, rotation):
 
 
 def test_lone_spheres_move_as_einstein_says_and_normally(simulation):
-    sim = noise(simulation(Spheres(copies(np.zeros((1, 3)), 4000).x, A), f"cut_off_distance inf visc {ETA} clumps_only yes", fix=False,
+    sim = noise(simulation(Spheres(copies(np.zeros((1, 3)), 4000).x, A),
+                           f"cut_off_distance inf visc {ETA} clumps_only yes", fix=False,
                            dt=SHORT))
     d = steps_of(sim, 8).ravel() / np.sqrt(2 * KT * SHORT / UNIT)
     n = len(d)
@@ -44,10 +47,11 @@ def test_open_cloud_has_the_covariance_of_all_pairs(simulation):
 def test_self_diffusion_in_a_periodic_cube(simulation, m, phi, own):
     side = m * A * (4 / 3 * np.pi / phi)**(1 / 3)
     g = (np.arange(m) + 0.5) * side / m
-    x = np.array([(p, q, r) for p in g for q in g for r in g]) + np.random.default_rng(m).uniform(-0.2, 0.2, (m**3, 3)) * A
+    x = (np.array([(p, q, r) for p in g for q in g for r in g]) +
+         np.random.default_rng(m).uniform(-0.2, 0.2, (m**3, 3)) * A)
     steps = max(60, 4000 // m**3)
-    sim = noise(simulation(Spheres(x, A), f"cut_off_distance inf visc {ETA} far_field_tolerance 1e-4", fix=False, dt=SHORT, boundary="p p p",
-                           box=[(0.0, side)] * 3))
+    sim = noise(simulation(Spheres(x, A), f"cut_off_distance inf visc {ETA} far_field_tolerance 1e-4", fix=False,
+                           dt=SHORT, boundary="p p p", box=[(0.0, side)] * 3))
     d = steps_of(sim, steps)
     assert d.std()**2 / (2 * KT * SHORT / UNIT) == pytest.approx(own, rel=4 * np.sqrt(2 / d.size) + 2e-3)
 
@@ -69,7 +73,7 @@ def test_periodic_noise_has_the_covariance_of_the_products(simulation):
     check_covariance(steps_of(sim, 1500).reshape(-1, 9), M, SHORT)
 
 
-# --- rigid clumps ---------------------------------------------------------------------------------------------------------
+# --- rigid clumps -----------------------------------------------------------------------------------------------------
 
 CLUMPS = f"cut_off_distance inf visc {ETA} clumps_only yes rigid_clumps yes rotation yes"
 ROD = A * np.array([(0, 0, 2.0 * k) for k in range(5)])
@@ -90,8 +94,8 @@ def test_clump_without_symmetry_moves_with_its_six_by_six(simulation):
     V = rigid_motion(steps_of(sim, 8).reshape(-1, 4, 3), L_OF_FOUR)
     V[:, 3:] *= A
     C = V.T @ V / len(V) / (2 * KT * SHORT) * UNIT
-    known = {(0, 0): 0.561894, (1, 1): 0.517759, (2, 2): 0.473551, (0, 1): -0.019734, (0, 5): 0.008365, (1, 5): -0.012600,
-             (2, 3): -0.010115, (2, 4): 0.007082}
+    known = {(0, 0): 0.561894, (1, 1): 0.517759, (2, 2): 0.473551, (0, 1): -0.019734, (0, 5): 0.008365,
+             (1, 5): -0.012600, (2, 3): -0.010115, (2, 4): 0.007082}
     for (p, q), value in known.items():
         sigma = np.sqrt((C[p, p] * C[q, q] + value**2) / len(V))
         assert C[p, q] == pytest.approx(value, abs=4.5 * sigma), (p, q)
@@ -113,7 +117,8 @@ def test_rod_turns_as_its_diffusivity_says(simulation):
 
 
 def home(count, centre, spacing=12.0):
-    """Variables hx hy hz: how far an atom is from where the centroid of its clump of four was when copies() put it there"""
+    """Variables hx hy hz: how far an atom is from where the centroid of its clump of four was when copies() put it
+    there"""
     side = int(np.ceil(count**(1 / 3)))
     return [f"variable hx atom x-({centre[0]:.17g})-{spacing}*((mol-1)%{side})",
             f"variable hy atom y-({centre[1]:.17g})-{spacing}*(floor((mol-1)/{side})%{side})",
@@ -121,8 +126,8 @@ def home(count, centre, spacing=12.0):
 
 
 def test_boltzmann_of_a_clump_in_a_field_and_a_trap(simulation):
-    """Spheres pulled to one place are a trap on the centroid, <c^2> = 3 kT/k; a couple on the long arm a field, energy -2 kT cos:
-    <cos> = coth 2 - 1/2. A clump that its noise moved about another point would drift against both."""
+    """Spheres pulled to one place are a trap on the centroid, <c^2> = 3 kT/k; a couple on the long arm a field, energy
+    -2 kT cos: <cos> = coth 2 - 1/2. A clump that its noise moved about another point would drift against both."""
     count, k, E = 1000, 0.5 * KT / A**2, 2 * KT / (4 * A)
     sim = simulation(copies(L_OF_FOUR, count), CLUMPS, fix=False, dt=0.2 * UNIT * A**2 / KT)
     sim.commands(home(count, L_OF_FOUR.mean(axis=0)))
@@ -144,7 +149,7 @@ def test_boltzmann_of_a_clump_in_a_field_and_a_trap(simulation):
     assert np.mean(squares) * k / (3 * KT) == pytest.approx(1, abs=4 * np.sqrt(2 / (3 * n)) + 0.01)
 
 
-# --- equilibrium of free spheres ------------------------------------------------------------------------------------------
+# --- equilibrium of free spheres --------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("scheme, expected", [("ab2", 1.0227), ("euler", 1.1111)])
 def test_variance_in_a_trap_is_that_of_the_scheme(simulation, scheme, expected):
@@ -154,7 +159,8 @@ def test_variance_in_a_trap_is_that_of_the_scheme(simulation, scheme, expected):
     side = int(np.ceil(3000**(1 / 3)))
     sim = simulation(Spheres(x, A), f"cut_off_distance inf visc {ETA} clumps_only yes", fix=False, dt=h * UNIT / k)
     index = {"x": f"((id-1)%{side})", "y": f"(floor((id-1)/{side})%{side})", "z": f"floor((id-1)/{side * side})"}
-    sim.commands([f"variable f{d} atom -{k!r}*({d}-12.0*{index[d]})" for d in "xyz"] + ["fix trap all addforce v_fx v_fy v_fz"])
+    sim.commands([f"variable f{d} atom -{k!r}*({d}-12.0*{index[d]})" for d in "xyz"] +
+                 ["fix trap all addforce v_fx v_fy v_fz"])
     noise(sim, f"scheme {scheme}").run(40)
     samples = []
     for _ in range(15):
@@ -164,7 +170,8 @@ def test_variance_in_a_trap_is_that_of_the_scheme(simulation, scheme, expected):
 
 
 def test_bond_has_boltzmanns_length(simulation):
-    """k = 100, r0 = 2.2 in units of kT and a, h = 0.1 for the relative motion: <r> - r0 = 0.009072, variance 9.959e-3 (+0.5 %)."""
+    """k = 100, r0 = 2.2 in units of kT and a, h = 0.1 for the relative motion: <r> - r0 = 0.009072, variance 9.959e-3
+    (+0.5 %)."""
     count, k = 1200, 100 * KT / A**2
     spheres = copies(A * np.array([(0, 0, 0), (2.2, 0, 0)]), count).chain_bonds()
     rate = k / UNIT * 2 * (1 - 1.5 / 2.2 + 1 / 2.2**3)    # of r, by the mobility along the line
@@ -181,10 +188,11 @@ def test_bond_has_boltzmanns_length(simulation):
     assert r.var() == pytest.approx(9.959e-3 * 1.005, rel=4 * np.sqrt(2 / n) + 0.005)
 
 
-# --- scheme midpoint: where the mobility has a drift ------------------------------------------------------------------------
+# --- scheme midpoint: where the mobility has a drift ------------------------------------------------------------------
 
 def test_bond_in_a_plane_has_boltzmanns_length(simulation, tmp_path):
-    """k = 4, r0 = 2.2 in units of kT and a: <r> 2.31364, variance 0.23709; without the drift the mean is 0.107 sigma short."""
+    """k = 4, r0 = 2.2 in units of kT and a: <r> 2.31364, variance 0.23709; without the drift the mean is 0.107 sigma
+    short."""
     count, k = 900, 4 * KT / A**2
     c = np.arange(count)
     origin = 12.0 * np.column_stack([c % 40, c // 40, 0 * c])
@@ -208,8 +216,8 @@ def test_midpoint_is_of_second_order_in_the_forces_too(simulation):
     """A bonded pair that falls beside a third sphere: forces change with position."""
     x, ends = np.array([(0, 0, 0), (2.6, 0, 0.3), (-1.0, 3.5, 0)]), []
     for steps in (25, 50, 100, 1600):
-        sim = simulation(Spheres(x, molecule=[1, 1, 2]).chain_bonds(), "cut_off_distance inf visc 1", fix=False, dt=20.0 / steps,
-                         box=[(-90.0, 90.0)] * 3)
+        sim = simulation(Spheres(x, molecule=[1, 1, 2]).chain_bonds(), "cut_off_distance inf visc 1", fix=False,
+                         dt=20.0 / steps, box=[(-90.0, 90.0)] * 3)
         sim.commands(["bond_style harmonic", "bond_coeff 1 4 2.2", f"fix weight all addforce 0 0 {-P6!r}",
                       "fix move all stokes_dynamics/overdamped scheme midpoint"]).run(steps)
         ends.append(sim.x)
@@ -221,7 +229,8 @@ def test_midpoint_with_steps_of_unequal_length_is_of_second_order_too(simulation
     """Short ones and such three times as long, in turns: what a force was counts by the length of the step before."""
     x, ends = np.array([(0, 0, 0), (2.6, 0, 0.3), (-1.0, 3.5, 0)]), []
     for pairs in (10, 20, 40, 400):
-        sim = simulation(Spheres(x, molecule=[1, 1, 2]).chain_bonds(), "cut_off_distance inf visc 1", fix=False, dt=1.0, box=[(-90.0, 90.0)] * 3)
+        sim = simulation(Spheres(x, molecule=[1, 1, 2]).chain_bonds(), "cut_off_distance inf visc 1", fix=False, dt=1.0,
+                         box=[(-90.0, 90.0)] * 3)
         sim.commands(["bond_style harmonic", "bond_coeff 1 4 2.2", f"fix weight all addforce 0 0 {-P6!r}",
                       "fix move all stokes_dynamics/overdamped scheme midpoint"])
         for k in range(2 * pairs):
@@ -249,16 +258,19 @@ def test_midpoint_is_of_second_order_in_a_flow_that_changes_in_time(simulation, 
         sim = simulation(Spheres(x, A, molecule=[1, 1, 2]), [
             "variable t equal step*dt", "variable eta equal 1.3+0.6*sin(3*v_t)",
             "variable ux atom 0.3*cos(3*v_t)+0.02*y*sin(3*v_t)", "variable uy atom 0.2*sin(3*v_t)+0.01*z*cos(3*v_t)",
-            f"pair_style stokes_dynamics cut_off_distance inf {words.replace('grid flow', f'grid {tmp_path}/flow')}{visc or f' visc {ETA}'} "
+            "pair_style stokes_dynamics cut_off_distance inf "
+            f"{words.replace('grid flow', f'grid {tmp_path}/flow')}{visc or f' visc {ETA}'} "
             f"{model} relative_tolerance 1e-10", "pair_coeff * *"], fix=False, dt=2.0 / steps, box=[(-90.0, 90.0)] * 3)
-        sim.commands([f"fix weight all addforce 0 0 {-P6!r}", "fix move all stokes_dynamics/overdamped scheme midpoint"]).run(steps)
+        sim.commands([f"fix weight all addforce 0 0 {-P6!r}",
+                      "fix move all stokes_dynamics/overdamped scheme midpoint"]).run(steps)
         ends.append(sim.x)
     errors = [np.abs(e - ends[-1]).max() for e in ends[:-1]]
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2, abs=0.25)
 
 
 def two_dumbbells():
-    return Spheres(A * np.array([(0, 0, 0), (0, 0, 2), (2.3, 0.2, 0), (2.4, 2.2, 0), (-1, -2.5, 0.4)]), A, molecule=[1, 1, 2, 2, 0])
+    return Spheres(A * np.array([(0, 0, 0), (0, 0, 2), (2.3, 0.2, 0), (2.4, 2.2, 0), (-1, -2.5, 0.4)]), A,
+                   molecule=[1, 1, 2, 2, 0])
 
 
 def test_clumps_that_feel_each_other_move_with_their_common_mobility(simulation):
@@ -297,33 +309,39 @@ def test_what_midpoint_cannot_move_is_an_error(simulation, tmp_path):
         noise(sim, "held some").run(0)
 
 
-@pytest.mark.parametrize("words, options, message", [(f"cut_off_distance inf visc {ETA}", "scheme ab2",
-                                                      "dimension 2, which holds a coordinate: the mobility has a drift"),
-                                                     (LONE_CLUMPS, "", "lone clumps in a plane have a drift: use clumps_only no")])
+@pytest.mark.parametrize("words, options, message", [
+    (f"cut_off_distance inf visc {ETA}", "scheme ab2",
+     "dimension 2, which holds a coordinate: the mobility has a drift"),
+    (LONE_CLUMPS, "", "lone clumps in a plane have a drift: use clumps_only no")])
 def test_a_plane_needs_the_midpoint(simulation, tmp_path, words, options, message):
     sim = in_a_plane(simulation, tmp_path, Spheres([(0, 0, 0), (3, 0, 0)], A), words, 1e-3)
     with pytest.raises(LammpsError, match=message):
         noise(sim, options).run(0)
 
 
-@pytest.mark.parametrize("style, scheme", [("", "ab2"), ("wall zlo -9", "midpoint"), ("rotation yes lubrication yes", "midpoint"),
-                                           ("clumps_only yes rigid_clumps yes rotation yes", "ab2"), ("multiblob 12", "midpoint")])
+@pytest.mark.parametrize("style, scheme", [("", "ab2"), ("wall zlo -9", "midpoint"),
+                                           ("rotation yes lubrication yes", "midpoint"),
+                                           ("clumps_only yes rigid_clumps yes rotation yes", "ab2"),
+                                           ("multiblob 12", "midpoint")])
 def test_the_scheme_is_midpoint_where_a_drift_exists(simulation, style, scheme):
     ends = []
     for options in ("", f"scheme {scheme}"):
-        sim = noise(simulation(Spheres(TRIO, A, molecule=[1, 1, 2]), f"cut_off_distance inf visc {ETA} {style}", fix=False, dt=1e-3), options)
+        sim = noise(simulation(Spheres(TRIO, A, molecule=[1, 1, 2]), f"cut_off_distance inf visc {ETA} {style}",
+                               fix=False, dt=1e-3), options)
         ends.append(sim.run(2).x)
     assert (ends[0] == ends[1]).all()
 
 
-# --- one run, in whatever pieces and on however many ranks ------------------------------------------------------------------
+# --- one run, in whatever pieces and on however many ranks ------------------------------------------------------------
 
 MIDPOINT = " scheme midpoint"
 WAYS = {"open": ("f f f", scattered, "cut_off_distance inf visc 1.1 rotation yes", ""),
         "periodic": ("p p p", scattered, "cut_off_distance inf visc 1.1 far_field_tolerance 1e-6", ""),
-        "clumps": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes rigid_clumps yes rotation yes", ""),
+        "clumps": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes rigid_clumps yes rotation yes",
+                   ""),
         "flexible": ("p p p", in_clumps, "cut_off_distance inf visc 1.1 clumps_only yes", ""),
-        "clumps midpoint": ("f f f", in_clumps, "cut_off_distance inf visc 1.1 rigid_clumps yes rotation yes relative_tolerance 1e-12", MIDPOINT),
+        "clumps midpoint": ("f f f", in_clumps, "cut_off_distance inf visc 1.1 rigid_clumps yes rotation yes "
+                                                "relative_tolerance 1e-12", MIDPOINT),
         "midpoint": ("p p p", scattered, "cut_off_distance inf visc 1.1 far_field_tolerance 1e-6", MIDPOINT)}
 
 
@@ -361,25 +379,29 @@ def test_products_in_a_periodic_box_do_not_depend_on_the_number(simulation):
     for n, side in ((64, 11.0), (500, 21.8)):
         m = int(np.ceil(n**(1 / 3)))
         g = np.indices((m, m, m)).reshape(3, -1).T[:n] * side / m
-        sim = simulation(Spheres(g + np.random.default_rng(2).uniform(-0.2, 0.2, g.shape)), "cut_off_distance inf visc 1.1 far_field_tolerance 1e-3",
+        sim = simulation(Spheres(g + np.random.default_rng(2).uniform(-0.2, 0.2, g.shape)),
+                         "cut_off_distance inf visc 1.1 far_field_tolerance 1e-3",
                          fix=False, dt=1e-6, boundary="p p p", box=[(0.0, side)] * 3)
         noise(sim).run(0)
         assert 3 <= sim.lmp.extract_fix("move", 0, 1, nrow=9) <= 7
 
 
-# --- what is refused --------------------------------------------------------------------------------------------------------
+# --- what is refused --------------------------------------------------------------------------------------------------
 
 INF = f"cut_off_distance inf visc {ETA}"
 
 
-@pytest.mark.parametrize("words, message", [("temperature -1 5", "'-1' must be >= 0"), ("temperature 1 0", "keyword temperature: '0' must"),
+@pytest.mark.parametrize("words, message", [("temperature -1 5", "'-1' must be >= 0"),
+                                            ("temperature 1 0", "keyword temperature: '0' must"),
                                             ("temperature 1 5 noise_tolerance 0.5", "'0.5' must be below 0.5"),
                                             ("temperature 1 5 noise_tolerance 0", "noise_tolerance: '0' must be > 0"),
                                             ("temperature v_none 5", "variable 'none' does not exist"),
-                                            ("temperature v_atoms 5", "keyword temperature: the variable must be of equal style: one value for all"),
+                                            ("temperature v_atoms 5", "keyword temperature: the variable must be of "
+                                             "equal style: one value for all"),
                                             ("temperature v_minus 5", "'-2' must be >= 0, in step 0"),
                                             ("temperature 1 5 adapt 1 1e-3 1 1", "leave out adapt"),
-                                            ("temperature 1 5 held some scheme ab2", "keyword held: the mobility has a drift"),
+                                            ("temperature 1 5 held some scheme ab2",
+                                             "keyword held: the mobility has a drift"),
                                             ("noise_tolerance 0.1", "keyword noise_tolerance requires a temperature")])
 def test_words_that_mean_nothing_are_errors(simulation, words, message):
     sim = simulation(Spheres(TRIO, A), INF, fix=False, dt=1e-3)
@@ -392,17 +414,23 @@ FIELD = "variable eta atom 1+0.1*x"
 
 
 @pytest.mark.parametrize("style, lines, message", [
-    (f"{INF} rotation yes lubrication yes", "", "keyword lubrication of pair_style stokes_dynamics: the mobility has a drift"),
+    (f"{INF} rotation yes lubrication yes", "",
+     "keyword lubrication of pair_style stokes_dynamics: the mobility has a drift"),
     (f"{INF} multiblob 12", "", "keyword multiblob of pair_style stokes_dynamics: the mobility has a drift"),
     (f"{INF} rigid_clumps yes rotation yes", "", "with clumps that feel each other: the mobility has a drift"),
     (f"{INF} wall zlo -9", "", "keyword wall of pair_style stokes_dynamics: the mobility has a drift"),
     (f"{INF} tensor oseen", "", "use tensor rpy"),
-    (f"cut_off_distance 4 clumps_only yes visc {ETA}", "", "keyword cut_off_distance: '4' of pair_style stokes_dynamics: the mobility has a drift"),
-    (f"cut_off_distance 4 visc {ETA}", "", "keyword cut_off_distance: '4' of pair_style stokes_dynamics leaves out flows"),
-    (f"cut_off_distance inf wall zlo -99 visc {ETA}", "", "keyword wall of pair_style stokes_dynamics: the mobility has a drift"),
-    (f"cut_off_distance 4 taper wendland visc {ETA}", "", "keyword taper of pair_style stokes_dynamics: the mobility has a drift"),
+    (f"cut_off_distance 4 clumps_only yes visc {ETA}", "",
+     "keyword cut_off_distance: '4' of pair_style stokes_dynamics: the mobility has a drift"),
+    (f"cut_off_distance 4 visc {ETA}", "",
+     "keyword cut_off_distance: '4' of pair_style stokes_dynamics leaves out flows"),
+    (f"cut_off_distance inf wall zlo -99 visc {ETA}", "",
+     "keyword wall of pair_style stokes_dynamics: the mobility has a drift"),
+    (f"cut_off_distance 4 taper wendland visc {ETA}", "",
+     "keyword taper of pair_style stokes_dynamics: the mobility has a drift"),
     ("cut_off_distance inf visc v_eta", "", "keyword visc of pair_style stokes_dynamics, which varies in space"),
-    ("clumps_only yes rigid_clumps yes shell 12 visc v_eta", "", "lone clumps in a viscosity that varies in space have a drift"),
+    ("clumps_only yes rigid_clumps yes shell 12 visc v_eta", "",
+     "lone clumps in a viscosity that varies in space have a drift"),
     (INF, "fix step all dt/reset 10 NULL 0.1 0.1", "of style dt/reset makes steps of unequal length"),
     (INF, "fix bath all langevin 1 1 1 77", "of style langevin adds a drag to spheres"),
     (INF, "fix bath all viscous 1", "of style viscous adds a drag to spheres")])
@@ -422,7 +450,8 @@ def test_friction_is_an_error(simulation):
 
 
 def test_steps_that_are_too_long_are_warned_of(tmp_path):
-    lines = input_lines(Spheres(TRIO, A), INF, os.path.join(str(tmp_path), "spheres.data"), fix=False, dt=3.0, box=[(-90.0, 90.0)] * 3)
+    lines = input_lines(Spheres(TRIO, A), INF, os.path.join(str(tmp_path), "spheres.data"), fix=False, dt=3.0,
+                        box=[(-90.0, 90.0)] * 3)
     text = lmp(tmp_path, lines + [MOVE.format(1.0, 3), "run 1"]).text
     assert "of its radius: use a shorter time step" in text and "of half the skin, so that lists" in text
     quiet = [line.replace("timestep 3.0", "timestep 1e-4") for line in lines]
@@ -435,7 +464,8 @@ def test_a_temperature_that_follows_a_compute_is_that_of_the_step(simulation):
     ends = []
     for thermo in (1, 1000):
         sim = simulation(Spheres(TRIO, A), f"cut_off_distance inf visc {ETA}", fix=False, dt=0.01)
-        sim.commands(["compute front all reduce max x", "variable T equal 1e-3*(1+c_front)", "fix pull all addforce 50 0 0", f"thermo {thermo}",
+        sim.commands(["compute front all reduce max x", "variable T equal 1e-3*(1+c_front)",
+                      "fix pull all addforce 50 0 0", f"thermo {thermo}",
                       "fix move all stokes_dynamics/overdamped temperature v_T 4711"]).run(20)
         ends.append(sim.x)
     assert np.ptp(ends[0][:, 0]) > 0.0 and np.array_equal(*ends)

@@ -1,12 +1,14 @@
-"""Brownian motion of what sees each other as bodies: spheres as shells of points, clumps with shells, films, walls, held spheres.
-Covariance of one step against the mobility, Boltzmann's distribution, one run on several ranks and in pieces."""
+"""Brownian motion of what sees each other as bodies: spheres as shells of points, clumps with shells, films, walls,
+held spheres. Covariance of one step against the mobility, Boltzmann's distribution, one run on several ranks and in
+pieces."""
 import os
 import sys
 
 import numpy as np
 import pytest
 
-from brownian import A, END, ETA, KT, SHORT, TIGHT, UNIT, check_covariance, check_pieces, check_ranks, check_same, end, in_a_plane, noise, script, steps_of
+from brownian import (A, END, ETA, KT, SHORT, TIGHT, UNIT, check_covariance, check_pieces, check_ranks, check_same, end,
+                      in_a_plane, noise, script, steps_of)
 from system import Spheres, input_lines, lmp
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "bench"))
@@ -24,7 +26,8 @@ def mobility(make, count, size, share):
         for d in range(3):
             parts = [f"{share[k, 3 * i + d]:.17g}*(id=={i + 1})" for i in range(count) if share[k, 3 * i + d]]
             lines.append(f"variable load{d} atom {'+'.join(parts) or '0'}")
-        sim = make().commands(lines + ["fix push all addforce v_load0 v_load1 v_load2", "fix move all stokes_dynamics/overdamped"]).run(0)
+        sim = make().commands(lines + ["fix push all addforce v_load0 v_load1 v_load2",
+                                       "fix move all stokes_dynamics/overdamped"]).run(0)
         N[:, k] = share @ sim.v.ravel()
     return N
 
@@ -40,7 +43,8 @@ DUMBBELLS = A * np.array([(0, 0, 0), (0, 0, 2), (2.1, 0.2, 0), (2.2, 2.2, 0)])
 CENTRES = np.kron([(0.5, 0.5, 0, 0), (0, 0, 0.5, 0.5)], np.eye(3))
 
 
-@pytest.mark.parametrize("words, count", [("multiblob 12 lubrication yes", 1000), ("rotation yes lubrication yes", 2000),
+@pytest.mark.parametrize("words, count", [("multiblob 12 lubrication yes", 1000),
+                                          ("rotation yes lubrication yes", 2000),
                                           ("multiblob 12 lubrication yes wall zlo -0.8", 500)])
 def test_step_of_spheres_has_the_covariance_of_their_mobility(simulation, words, count):
     check_step(lambda: simulation(Spheres(TRIO, A), f"{INF} {words}", fix=False, dt=SHORT), 3, SPHERES, count)
@@ -48,14 +52,15 @@ def test_step_of_spheres_has_the_covariance_of_their_mobility(simulation, words,
 
 @pytest.mark.parametrize("words", ["rigid_clumps yes shell 12", "rigid_clumps yes multiblob 12 lubrication yes"])
 def test_step_of_clumps_has_the_covariance_of_their_mobility(simulation, words):
-    check_step(lambda: simulation(Spheres(DUMBBELLS, A, molecule=[1, 1, 2, 2]), f"{INF} {words}", fix=False, dt=SHORT), 4, CENTRES, 1000)
+    check_step(lambda: simulation(Spheres(DUMBBELLS, A, molecule=[1, 1, 2, 2]), f"{INF} {words}", fix=False,
+                                  dt=SHORT), 4, CENTRES, 1000)
 
 
 def test_step_in_a_periodic_box_has_the_covariance_of_the_mobility(simulation):
     """Films through the faces of the box, too"""
     x = TRIO + 0.1
-    make = lambda: simulation(Spheres(x % 3.2, A), f"{INF} multiblob 12 lubrication yes far_field_tolerance 1e-4", fix=False, dt=SHORT,
-                              boundary="p p p", box=[(0.0, 3.2)] * 3)
+    make = lambda: simulation(Spheres(x % 3.2, A), f"{INF} multiblob 12 lubrication yes far_field_tolerance 1e-4",
+                              fix=False, dt=SHORT, boundary="p p p", box=[(0.0, 3.2)] * 3)
     check_step(make, 3, SPHERES, 350)
 
 
@@ -64,24 +69,30 @@ NOT_POSITIVE = "the near part of the periodic sum has a negative mode"
 
 def test_a_near_part_that_is_not_positive_gives_way_to_the_whole_matrix(simulation, tmp_path):
     """Spheres that overlap by half; it is said once."""
-    x, box = np.array([(1, 2, 1), (1, 2, 1)]) + np.outer((0, 1.145), (0.5**0.5, 0, 0.5**0.5)), dict(boundary="p p p", box=[(0.0, 5.0)] * 3)
+    x, box = (np.array([(1, 2, 1), (1, 2, 1)]) + np.outer((0, 1.145), (0.5**0.5, 0, 0.5**0.5)),
+              dict(boundary="p p p", box=[(0.0, 5.0)] * 3))
     words = "cut_off_distance inf visc 1 multiblob 12 relative_tolerance 1e-8 far_field_tolerance 1e-6"
-    check_step(lambda: simulation(Spheres(x), words, fix=False, dt=SHORT, **box), 2, np.eye(6), 350, "noise_tolerance 1e-6")
+    check_step(lambda: simulation(Spheres(x), words, fix=False, dt=SHORT, **box), 2, np.eye(6), 350,
+               "noise_tolerance 1e-6")
     said = []
     for distance in (1.0, 2.0):
-        lines = input_lines(Spheres((x - x[0]) * distance + x[0]), words, str(tmp_path / "data"), fix=False, dt=SHORT, **box)
-        said.append(lmp(tmp_path, lines + ["fix move all stokes_dynamics/overdamped temperature 0.8 7 noise_tolerance 1e-6", "run 5"]).log.count(NOT_POSITIVE))
+        lines = input_lines(Spheres((x - x[0]) * distance + x[0]), words, str(tmp_path / "data"), fix=False, dt=SHORT,
+                            **box)
+        said.append(lmp(tmp_path, lines + ["fix move all stokes_dynamics/overdamped temperature 0.8 7 "
+                                           "noise_tolerance 1e-6", "run 5"]).log.count(NOT_POSITIVE))
     assert said == [1, 0]
 
 
 def test_held_spheres_stay_and_the_others_feel_it(simulation):
     """The mobility beside spheres that are held is less than that beside free ones."""
-    make = lambda: simulation(Spheres(TRIO, A), f"{INF} multiblob 12 lubrication yes", fix=False, dt=SHORT).commands("group some id 2 3")
+    make = lambda: simulation(Spheres(TRIO, A), f"{INF} multiblob 12 lubrication yes", fix=False,
+                              dt=SHORT).commands("group some id 2 3")
     share = SPHERES[:3]
     free = mobility(make, 3, 3, share)
     N = np.zeros((3, 3))
     for k in range(3):
-        sim = make().commands(["variable one atom id==1", f"fix push all addforce {' '.join('v_one' if d == k else '0' for d in range(3))}",
+        sim = make().commands(["variable one atom id==1",
+                               f"fix push all addforce {' '.join('v_one' if d == k else '0' for d in range(3))}",
                                "fix move all stokes_dynamics/overdamped held some"]).run(0)
         N[:, k] = sim.v[0]
     assert (np.linalg.eigvalsh(free - N) > 0.05 * free[0, 0]).all()
@@ -105,14 +116,17 @@ def test_clumps_in_a_plane_stay_in_it(simulation, tmp_path):
 LENGTH = 1e-8
 
 
-@pytest.mark.parametrize("words, molecule", [("rotation yes lubrication yes wall zlo {}", 0), ("multiblob 12 lubrication yes", 0),
-                                             ("rotation yes rigid_clumps yes", [1, 1, 2, 2]), ("rigid_clumps yes shell 12 lubrication yes", [1, 1, 2, 2])])
+@pytest.mark.parametrize("words, molecule", [("rotation yes lubrication yes wall zlo {}", 0),
+                                             ("multiblob 12 lubrication yes", 0),
+                                             ("rotation yes rigid_clumps yes", [1, 1, 2, 2]),
+                                             ("rigid_clumps yes shell 12 lubrication yes", [1, 1, 2, 2])])
 def test_steps_do_not_depend_on_the_unit_of_length(simulation, words, molecule):
     """Spheres of nanometres in metres take the steps that they take in nanometres, by the same random numbers."""
     ends = []
     for unit in (1.0, LENGTH):
-        sim = simulation(Spheres(unit * DUMBBELLS, unit * A, molecule=molecule), f"{INF} {words.format(-0.8 * unit)}", fix=False,
-                         dt=0.003 * unit**3, box=[(-40.0 * unit, 40.0 * unit)] * 3, before_pair=f"neighbor {0.3 * unit!r} bin")
+        sim = simulation(Spheres(unit * DUMBBELLS, unit * A, molecule=molecule), f"{INF} {words.format(-0.8 * unit)}",
+                         fix=False, dt=0.003 * unit**3, box=[(-40.0 * unit, 40.0 * unit)] * 3,
+                         before_pair=f"neighbor {0.3 * unit!r} bin")
         noise(sim).run(3)
         ends.append(sim.x / unit)
     assert np.abs(ends[0] - DUMBBELLS).max() > 0.01
@@ -126,7 +140,7 @@ def test_no_step_is_too_long_for_films_and_stiff_contacts(step, kT):
     assert failed == 0 and solve < 30 and deepest < 0.15 and 0.2 * kT < energy < 3 * kT
 
 
-# --- equilibrium ----------------------------------------------------------------------------------------------------------
+# --- equilibrium ------------------------------------------------------------------------------------------------------
 
 def boltzmann(k, r0):
     """Mean and variance of a bond of energy k/2 (r - r0)^2 in units of kT"""
@@ -138,7 +152,8 @@ def boltzmann(k, r0):
 
 @pytest.mark.parametrize("words, runs", [("rotation yes lubrication yes", 400)])
 def test_bonds_between_spheres_with_films_have_boltzmanns_length(simulation, words, runs):
-    """Without the drift of the film the mean is 0.27 sigma too short. They are no molecules: within one there are no films."""
+    """Without the drift of the film the mean is 0.27 sigma too short. They are no molecules: within one there are no
+    films."""
     count, k = 8, 25 * KT / A**2
     origin = np.array([(p, q, r) for p in (0, 30) for q in (0, 30) for r in (0, 30)], float)
     x = (origin[:, None] + A * np.array([(0, 0, 0), (2.45, 0, 0)])).reshape(-1, 3)
@@ -159,14 +174,17 @@ def test_bonds_between_spheres_with_films_have_boltzmanns_length(simulation, wor
 
 
 def test_stiff_bond_between_multiblobs_with_a_film_has_boltzmanns_length(simulation):
-    """A gap of 0.15 and a standard deviation of 0.04 radii, in steps of 0.2 over the rate of the bond. Without the drift the mean is 0.16
-    sigma too short; the scheme's own error is 0.02 sigma of the mean and 5 % of the variance (noise-faster.md 1.2)."""
+    """A gap of 0.15 and a standard deviation of 0.04 radii, in steps of 0.2 over the rate of the bond. Without the
+    drift the mean is 0.16 sigma too short; the scheme's own error is 0.02 sigma of the mean and 5 % of the variance
+    (noise-faster.md 1.2)."""
     count, k, r0, runs = 8, 625 * KT / A**2, 2.15, 400
     origin = np.array([(p, q, r) for p in (0, 30) for q in (0, 30) for r in (0, 30)], float)
     x = (origin[:, None] + A * np.array([(0, 0, 0), (r0, 0, 0)])).reshape(-1, 3)
     make = lambda dt: simulation(Spheres(x, A, bonds=[(2 * i + 1, 2 * i + 2) for i in range(count)]),
-                                 f"cut_off_distance inf visc {ETA} multiblob 12 lubrication yes", fix=False, dt=dt, box=[(-90.0, 120.0)] * 3)
-    apart = make(SHORT).commands(["variable f atom (id%2)*2-1", "fix push all addforce v_f 0 0", "fix move all stokes_dynamics/overdamped"]).run(0)
+                                 f"cut_off_distance inf visc {ETA} multiblob 12 lubrication yes", fix=False, dt=dt,
+                                 box=[(-90.0, 120.0)] * 3)
+    apart = make(SHORT).commands(["variable f atom (id%2)*2-1", "fix push all addforce v_f 0 0",
+                                  "fix move all stokes_dynamics/overdamped"]).run(0)
     rate = k * (apart.v[0, 0] - apart.v[1, 0])
     sim = make(0.2 / rate)
     sim.commands(["bond_style harmonic", f"bond_coeff 1 {k / 2!r} {r0 * A!r}", "comm_modify cutoff 8"])
@@ -182,7 +200,7 @@ def test_stiff_bond_between_multiblobs_with_a_film_has_boltzmanns_length(simulat
     assert r.var() == pytest.approx(1.04 * variance, rel=3 * np.sqrt(2 / n) + 0.01)
 
 
-# --- one run, in whatever pieces and on however many ranks ------------------------------------------------------------------
+# --- one run, in whatever pieces and on however many ranks ------------------------------------------------------------
 
 def close_spheres(n=10, side=18.0, seed=4):
     """Some within the reach of films"""
@@ -239,10 +257,11 @@ def test_ranks_and_newton_do_not_matter(tmp_path, way):
 
 @pytest.mark.ranks(2)
 def test_a_rank_that_has_no_copies_may_be_copied(tmp_path):
-    """Two spheres of one rank stand between those of the other, in the box round them, and are copied there; these are far from both. A rank
-    that had no copies to refresh for the noise of films left the other waiting."""
+    """Two spheres of one rank stand between those of the other, in the box round them, and are copied there; these are
+    far from both. A rank that had no copies to refresh for the noise of films left the other waiting."""
     x = A * np.array([(-1.2, 0, 0), (-3.5, 0.3, 0), (1.2, 0, 40.0), (1.2, 0, -40.0)])
-    lines = script(tmp_path, ("f f f", lambda: Spheres(x, A), f"{SHARP} multiblob 12 lubrication yes", TIGHT), END + ["run 20"])
+    lines = script(tmp_path, ("f f f", lambda: Spheres(x, A), f"{SHARP} multiblob 12 lubrication yes", TIGHT),
+                   END + ["run 20"])
     one = end(tmp_path, lines)
     before = next(k for k, line in enumerate(lines) if line.startswith("boundary"))
     check_same(end(tmp_path, [*lines[:before], "processors 2 1 1", *lines[before:]], 2), one, *CLOSE)

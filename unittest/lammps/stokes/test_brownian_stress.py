@@ -1,5 +1,6 @@
-"""The stress that Brownian motion adds (compute stokes_dynamics/stress): -kT div C/V, C: loads on bodies -> first moments of the forces on the
-fluid. Its mean against differences of C, C against the velocities in strain, the coefficient of phi^2 of a dilute suspension, pieces and ranks."""
+"""The stress that Brownian motion adds (compute stokes_dynamics/stress): -kT div C/V, C: loads on bodies -> first
+moments of the forces on the fluid. Its mean against differences of C, C against the velocities in strain, the
+coefficient of phi^2 of a dilute suspension, pieces and ranks."""
 import os
 
 import numpy as np
@@ -10,14 +11,16 @@ from system import LammpsError, Spheres, dump_lines
 from test_brownian_bodies import CROOKED, SHARP, close_spheres, in_few_clumps
 from test_brownian_shear import DEFORM
 
-# three unit spheres with films, as in reference/scripts/noise_faster/stress.py, and what that independent program finds for eta = kT = 1 with
-# these films (0.41015 0.03902 0.67409 0.96436 1.97316 with its own, read from fewer means over the orientations of the shells), and without films
+# three unit spheres with films, as in reference/scripts/noise_faster/stress.py, and what that independent program finds
+# for eta = kT = 1 with these films (0.41015 0.03902 0.67409 0.96436 1.97316 with its own, read from fewer means over
+# the orientations of the shells), and without films
 THREE = np.array([[0, 0, 0], [2.05, 0, 0], [0.3, 2.02, 0.5]])
 OF_THREE = [0.41277, 0.03971, 0.67460, 0.96076, 1.97214]
 WITHOUT_FILMS = [-0.134159, -0.065528, 0.075241, -0.024386, 0.094191]
 WORDS = "cut_off_distance inf visc 1 relative_tolerance 1e-11 max_iter 400 multiblob 12"
 FILMS = f"{WORDS} lubrication yes"
-SUM = ["compute S all stokes_dynamics/stress variance {}", "compute sum all reduce sum " + " ".join(f"c_S[{k}]" for k in range(1, 13))]
+SUM = ["compute S all stokes_dynamics/stress variance {}",
+       "compute sum all reduce sum " + " ".join(f"c_S[{k}]" for k in range(1, 13))]
 BASIS = np.zeros((5, 3, 3))    # unit strains; the moments in them are those of OF_THREE
 for k, (p, q) in enumerate([(0, 1), (0, 2), (1, 2)]):
     BASIS[k, p, q] = BASIS[k, q, p] = 0.5**0.5
@@ -32,17 +35,20 @@ def in_basis(xx, yy, zz, xy, xz, yz):
 def moments(simulation, spheres, words, lines, move=""):
     """Sum of first moments of a run of no steps, with these lines before the fix"""
     sim = simulation(spheres, words, fix=False, dt=1e-3)
-    sim.commands(lines + [f"fix move all stokes_dynamics/overdamped {move}"] + [line.format("raw") for line in SUM] + ["thermo_style custom step c_sum[1]"]).run(0)
+    sim.commands(lines + [f"fix move all stokes_dynamics/overdamped {move}"] + [line.format("raw") for line in SUM] +
+                 ["thermo_style custom step c_sum[1]"]).run(0)
     row = np.array([sim.lmp.extract_compute("sum", 0, 1)[k] for k in range(12)])
     return in_basis(*(row[:6] + row[6:]))
 
 
 def push(ids, direction):
-    return [f"group pushed id {' '.join(str(i) for i in ids)}", "fix push pushed addforce " + " ".join(repr(float(c) / len(ids)) for c in np.eye(3)[direction])]
+    return [f"group pushed id {' '.join(str(i) for i in ids)}",
+            "fix push pushed addforce " + " ".join(repr(float(c) / len(ids)) for c in np.eye(3)[direction])]
 
 
 def divergence(simulation, columns, d=1e-4):
-    """Central differences: columns are functions that give a column of C where its coordinate is by so much another one"""
+    """Central differences: columns are functions that give a column of C where its coordinate is by so much another
+    one"""
     return sum((column(d) - column(-d)) / (2 * d) for column in columns)
 
 
@@ -57,13 +63,15 @@ def of_sphere(simulation, spheres, words, i, direction):
 def strain_velocity(simulation, x, E):
     """Velocities [n, 3] of free spheres in the flow E.x"""
     sim = simulation(Spheres(x), f"{FILMS} fluid_velocity v_u0 v_u1 v_u2", fix=False, dt=1e-3,
-                     before_pair="\n".join(f"variable u{p} atom " + "+".join(f"({float(E[p, q])!r})*{'xyz'[q]}" for q in range(3)) for p in range(3)))
+                     before_pair="\n".join(f"variable u{p} atom " + "+".join(f"({float(E[p, q])!r})*{'xyz'[q]}"
+                                                                             for q in range(3)) for p in range(3)))
     return sim.commands("fix move all stokes_dynamics/overdamped").run(0).v
 
 
 def test_the_mean_is_the_divergence_of_velocities_in_strain_too(simulation):
     """C is the transpose of what a strain does to the velocities, beyond carrying the spheres"""
-    div = divergence(simulation, [of_sphere(simulation, Spheres(THREE), FILMS, i, d) for i in range(3) for d in range(3)])
+    div = divergence(simulation, [of_sphere(simulation, Spheres(THREE), FILMS, i, d) for i in range(3)
+                                  for d in range(3)])
     other, step = np.zeros(5), 1e-4
     for k in range(5):
         for i in range(3):
@@ -74,14 +82,16 @@ def test_the_mean_is_the_divergence_of_velocities_in_strain_too(simulation):
                     other[k] += sign * (strain_velocity(simulation, x, BASIS[k]) - x @ BASIS[k])[i, d] / (2 * step)
     assert div == pytest.approx(-other, abs=1e-6) or div == pytest.approx(other, abs=1e-6)
     assert div == pytest.approx(OF_THREE, abs=6e-5)    # its constants of a lone sphere have six digits
-    points = divergence(simulation, [of_sphere(simulation, Spheres(THREE), WORDS, i, d) for i in range(3) for d in range(3)])
+    points = divergence(simulation, [of_sphere(simulation, Spheres(THREE), WORDS, i, d) for i in range(3)
+                                     for d in range(3)])
     assert points == pytest.approx(WITHOUT_FILMS, abs=4e-6)
 
 
 def sample(simulation, folder, spheres, words, steps, variance, dt=2e-7, seed=5):
     """[steps, 5] sums of moments over kT, in steps in which hardly anything moves"""
     sim = simulation(spheres, words, fix=False, dt=dt)
-    sim.commands([f"fix move all stokes_dynamics/overdamped temperature {KT!r} {seed} noise_tolerance 1e-6"] + [line.format(variance) for line in SUM] +
+    sim.commands([f"fix move all stokes_dynamics/overdamped temperature {KT!r} {seed} noise_tolerance 1e-6"] +
+                 [line.format(variance) for line in SUM] +
                  [f"fix out all ave/time 1 1 1 c_sum[*] start 2 file {folder}/moments"]).run(steps + 1)
     rows = np.loadtxt(os.path.join(folder, "moments"))
     return np.array([in_basis(*(row[1:7] + row[7:13])) for row in rows]) / KT
@@ -111,32 +121,35 @@ def turned(x, axis, angle):
 
 
 def test_a_clump_has_it_too_with_its_turns(simulation, tmp_path):
-    """A clump of four beside a sphere: the divergence is over the places of both and the turns of the clump. Random forces on its spheres are no
-    stress of what holds it together."""
+    """A clump of four beside a sphere: the divergence is over the places of both and the turns of the clump. Random
+    forces on its spheres are no stress of what holds it together."""
     words = f"{WORDS} rigid_clumps yes"
     x = np.vstack([CROOKED / 0.7, [(1.2, -1.9, 0.6)]])
     make = lambda x: Spheres(x, molecule=[1, 1, 1, 1, 0])
 
     def whole(direction):
-        return lambda d: moments(simulation, make(np.vstack([x[:4] + d * np.eye(3)[direction], x[4:]])), words, push([1, 2, 3, 4], direction))
+        return lambda d: moments(simulation, make(np.vstack([x[:4] + d * np.eye(3)[direction], x[4:]])), words,
+                                 push([1, 2, 3, 4], direction))
 
     def turn(axis):
         def column(d):
             torque = " ".join(repr(0.25 * float(c)) for c in np.eye(3)[axis])
-            return moments(simulation, make(np.vstack([turned(x[:4], axis, d), x[4:]])), words, ["group clump id 1 2 3 4"], f"torque clump {torque}")
+            return moments(simulation, make(np.vstack([turned(x[:4], axis, d), x[4:]])), words,
+                           ["group clump id 1 2 3 4"], f"torque clump {torque}")
         return column
 
-    columns = [whole(d) for d in range(3)] + [turn(d) for d in range(3)] + [of_sphere(simulation, make(x), words, 4, d) for d in range(3)]
+    columns = [whole(d) for d in range(3)] + [turn(d) for d in range(3)] + [of_sphere(simulation, make(x), words, 4, d)
+                                                                            for d in range(3)]
     div = divergence(simulation, columns)
     error = check_mean(sample(simulation, tmp_path, make(x), words, 1500, "low"), div)
     assert (np.abs(div) > 4 * error).any()
 
 
-# --- a dilute suspension ---------------------------------------------------------------------------------------------------
+# --- a dilute suspension ----------------------------------------------------------------------------------------------
 
 def pair_functions(simulation, gap, h, t):
-    """A, B: V_1 - V_2 = E.r - r [A hh + B (1 - hh)].E.h of free spheres in a strain, r along h; G, H: their relative mobility along h and across, t,
-    over that of far ones"""
+    """A, B: V_1 - V_2 = E.r - r [A hh + B (1 - hh)].E.h of free spheres in a strain, r along h; G, H: their relative
+    mobility along h and across, t, over that of far ones"""
     r = 2.0 + gap
     x = 0.5 * r * np.array([h, -h])
     relative = lambda v: v[0] - v[1]
@@ -161,12 +174,14 @@ def directions(count):
 
 
 def test_the_coefficient_of_phi_squared_at_low_peclet_numbers(simulation):
-    """Brownian part of the viscosity of a dilute suspension, 0.9125 phi^2 [5.9147 - 5.0022, recalled]. At Pe -> 0 the density of pairs is
-    1 - hEh f; the radial equation for f by finite volumes on a logarithmic grid, fluxes r^2 (V_r + D G f'), then the mean of div C."""
+    """Brownian part of the viscosity of a dilute suspension, 0.9125 phi^2 [5.9147 - 5.0022, recalled]. At Pe -> 0 the
+    density of pairs is 1 - hEh f; the radial equation for f by finite volumes on a logarithmic grid, fluxes r^2 (V_r +
+    D G f'), then the mean of div C."""
     gaps = np.array([1e-3, 4e-3, 0.012, 0.03, 0.07, 0.15, 0.3, 0.5, 0.75, 1.0, 1.5, 2.5, 4.0, 7.0, 14.0])
     fn = np.array([np.mean([pair_functions(simulation, gap, h, t) for h, t in directions(8)], axis=0) for gap in gaps])
     r0 = 2 + gaps
-    table = np.column_stack([fn[:, 0] * r0**3, fn[:, 1] * r0**5, fn[:, 2] / np.where(gaps < 1, gaps / (gaps + 0.3), 1), fn[:, 3]])
+    table = np.column_stack([fn[:, 0] * r0**3, fn[:, 1] * r0**5, fn[:, 2] / np.where(gaps < 1, gaps / (gaps + 0.3), 1),
+                             fn[:, 3]])
 
     def ABGH(r):
         q = np.log(np.clip(r - 2, gaps[0], gaps[-1]))
@@ -206,14 +221,16 @@ def spline(x, y, at):
     m = np.concatenate([[d[0]], (h[1:] * d[:-1] + h[:-1] * d[1:]) / (h[1:] + h[:-1]), [d[-1]]])
     k = np.clip(np.searchsorted(x, at) - 1, 0, len(h) - 1)
     t = (at - x[k]) / h[k]
-    return y[k] * (1 + 2 * t) * (1 - t)**2 + h[k] * m[k] * t * (1 - t)**2 + y[k + 1] * t**2 * (3 - 2 * t) + h[k] * m[k + 1] * t**2 * (t - 1)
+    return (y[k] * (1 + 2 * t) * (1 - t)**2 + h[k] * m[k] * t * (1 - t)**2 + y[k + 1] * t**2 * (3 - 2 * t) + h[k] *
+            m[k + 1] * t**2 * (t - 1))
 
 
-# --- output ------------------------------------------------------------------------------------------------------------------
+# --- output -----------------------------------------------------------------------------------------------------------
 
 COLUMNS = "xu yu zu vx vy vz " + " ".join(f"c_S[{k}]" for k in range(1, 13))
 ROWS = dump_lines("end.dump", every=20, columns=COLUMNS)
-WAYS = {"shells with films": ("p p p", close_spheres, f"{SHARP} multiblob 12 lubrication yes fluid_velocity box", TIGHT + DEFORM),
+WAYS = {"shells with films": ("p p p", close_spheres, f"{SHARP} multiblob 12 lubrication yes fluid_velocity box",
+                              TIGHT + DEFORM),
         "clumps": ("p p p", in_few_clumps, f"{SHARP} rigid_clumps yes multiblob 12 lubrication yes", TIGHT)}
 
 
@@ -235,8 +252,10 @@ IN_SETUP = ["fix pull all addforce 0.3 0 -1", "fix move all stokes_dynamics/over
 def test_averages_take_the_value_of_the_first_step_too(simulation, tmp_path, variance, words):
     """Where one value is asked for each time, LAMMPS takes the first in set-up, before the fixes that come later"""
     sim = simulation(Spheres(THREE), f"{FILMS}", fix=False, dt=1e-3)
-    sim.commands(IN_SETUP[:1] + [line.format(variance) for line in SUM] + [f"fix out all ave/time 1 1 2 c_sum[4] {words} file {tmp_path}/values"] + IN_SETUP[1:] +
-                 ["thermo 2", "thermo_style custom step c_sum[4]", f"fix same all print 2 '$(step) $(c_sum[4]:%.8g)' file {tmp_path}/same"]).run(4).run(2)
+    sim.commands(IN_SETUP[:1] + [line.format(variance) for line in SUM] +
+                 [f"fix out all ave/time 1 1 2 c_sum[4] {words} file {tmp_path}/values"] + IN_SETUP[1:] +
+                 ["thermo 2", "thermo_style custom step c_sum[4]",
+                  f"fix same all print 2 '$(step) $(c_sum[4]:%.8g)' file {tmp_path}/same"]).run(4).run(2)
     values, same = np.loadtxt(tmp_path / "values"), np.loadtxt(tmp_path / "same")
     assert list(values[:, 0]) == [0, 2, 4, 6] and np.abs(values[:, 1]).min() > 0
     for step, value in same:
@@ -245,25 +264,30 @@ def test_averages_take_the_value_of_the_first_step_too(simulation, tmp_path, var
 
 def test_a_first_value_without_all_forces_is_an_error(simulation):
     sim = simulation(Spheres(THREE), FILMS, fix=False, dt=1e-3)
-    sim.commands(IN_SETUP[1:] + [line.format("raw") for line in SUM] + ["fix out all ave/time 1 1 2 c_sum[4]"] + IN_SETUP[:1])
-    with pytest.raises(LammpsError, match="before all forces of this step were known: define it after the fixes that add forces"):
+    sim.commands(IN_SETUP[1:] + [line.format("raw") for line in SUM] + ["fix out all ave/time 1 1 2 c_sum[4]"] +
+                 IN_SETUP[:1])
+    with pytest.raises(LammpsError,
+                       match="before all forces of this step were known: define it after the fixes that add forces"):
         sim.run(2)
 
 
 def test_pressure_of_the_particles_is_ideal_and_virial(simulation):
     """n kT, and the virial of springs; a clump counts once, who is held does not"""
-    spheres = Spheres([(1, 1, 1), (3.1, 1, 1), (6, 6, 6), (8.1, 6, 6), (5, 1, 8)], molecule=[1, 1, 0, 0, 0], bonds=[(3, 4)])
+    spheres = Spheres([(1, 1, 1), (3.1, 1, 1), (6, 6, 6), (8.1, 6, 6), (5, 1, 8)], molecule=[1, 1, 0, 0, 0],
+                      bonds=[(3, 4)])
     sim = simulation(spheres, f"{WORDS} rigid_clumps yes", fix=False, dt=1e-3, boundary="p p p", box=[(0.0, 11.0)] * 3)
     sim.commands(["bond_style harmonic", "bond_coeff 1 3.5 1.7", "group held id 5", "comm_modify cutoff 5",
-                  f"fix move all stokes_dynamics/overdamped temperature {KT!r} 5 held held", "compute S all stokes_dynamics/stress",
-                  "thermo_style custom step c_S[19]"]).run(0)
-    assert sim.lmp.extract_compute("S", 0, 1)[18] == pytest.approx((3 * KT + 2.1 * -2 * 3.5 * (2.1 - 1.7) / 3) / 11.0**3, rel=1e-9)
+                  f"fix move all stokes_dynamics/overdamped temperature {KT!r} 5 held held",
+                  "compute S all stokes_dynamics/stress", "thermo_style custom step c_S[19]"]).run(0)
+    assert sim.lmp.extract_compute("S", 0, 1)[18] == pytest.approx((3 * KT + 2.1 * -2 * 3.5 * (2.1 - 1.7) / 3) /
+                                                                   11.0**3, rel=1e-9)
 
 
-# --- the pressure of a suspension at rest ------------------------------------------------------------------------------------
+# --- the pressure of a suspension at rest -----------------------------------------------------------------------------
 
 def hard_spheres(n, phi, sweeps=300, seed=3):
-    """Places of unit spheres in a periodic cube, and its edge: from a cubic lattice, by moves at random that keep them apart"""
+    """Places of unit spheres in a periodic cube, and its edge: from a cubic lattice, by moves at random that keep them
+    apart"""
     rng, edge = np.random.default_rng(seed), (4 / 3 * np.pi * n / phi)**(1 / 3)
     m = int(np.ceil((n / 4)**(1 / 3)))
     corner = np.array([(i, j, k) for i in range(m) for j in range(m) for k in range(m)], float)
@@ -280,16 +304,19 @@ def hard_spheres(n, phi, sweeps=300, seed=3):
 
 @pytest.mark.parametrize("phi, steps", [(0.3, 500), (0.45, 400)])
 def test_osmotic_pressure_is_that_of_carnahan_and_starling(simulation, tmp_path, phi, steps):
-    """Value 19 of spheres at rest. Springs of stiffness k below a distance of 2 + (pi kT/2k)^1/2 make them as large as hard spheres of radius 1
-    (Barker & Henderson 1967). Its error: of blocks that are long beside the life of a contact."""
+    """Value 19 of spheres at rest. Springs of stiffness k below a distance of 2 + (pi kT/2k)^1/2 make them as large as
+    hard spheres of radius 1 (Barker & Henderson 1967). Its error: of blocks that are long beside the life of a
+    contact."""
     x, edge = hard_spheres(32, phi)
     k = 400.0 * KT
     reach = 2 + (np.pi * KT / (2 * k))**0.5
-    style = [f"pair_style hybrid/overlay soft {reach!r} stokes_dynamics cut_off_distance inf visc {1 / (6 * np.pi)!r} multiblob 12",
+    style = [f"pair_style hybrid/overlay soft {reach!r} stokes_dynamics cut_off_distance inf visc "
+             f"{1 / (6 * np.pi)!r} multiblob 12",
              f"pair_coeff * * soft {k * (reach / np.pi)**2!r}", "pair_coeff * * stokes_dynamics"]
     sim = simulation(Spheres(x), style, fix=False, dt=2.5e-4 / KT, boundary="p p p", box=[(0.0, float(edge))] * 3)
     noise = f"fix move all stokes_dynamics/overdamped temperature {KT!r} 5"
-    sim.commands([noise, "compute S all stokes_dynamics/stress", f"fix out all ave/time 2 1 2 c_S[19] start 4 file {tmp_path}/pressure"]).run(steps)
+    sim.commands([noise, "compute S all stokes_dynamics/stress",
+                  f"fix out all ave/time 2 1 2 c_S[19] start 4 file {tmp_path}/pressure"]).run(steps)
     p = np.loadtxt(os.path.join(tmp_path, "pressure"))[:, 1] * edge**3 / (32 * KT)
     blocks = np.array([part.mean() for part in np.array_split(p[len(p) // 5:], 8)])
     exact = (1 + phi + phi**2 - phi**3) / (1 - phi)**3

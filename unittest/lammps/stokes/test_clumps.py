@@ -17,7 +17,8 @@ FORCES = "f_drag[1] f_drag[2] f_drag[3]"
 def tetrahedron(centre=(0, 0, 0)):
     """Four overlapping spheres of two radii with their own velocities, 2.3 wide."""
     x = 0.8 * np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], float) + centre
-    return Spheres(x, (A, A, 0.8 * A, 1.2 * A), [(0.3, 0, 0.1), (0, -0.2, 0.4), (0.1, 0.1, -0.5), (-0.3, 0.2, 0)], molecule=3)
+    return Spheres(x, (A, A, 0.8 * A, 1.2 * A), [(0.3, 0, 0.1), (0, -0.2, 0.4), (0.1, 0.1, -0.5), (-0.3, 0.2, 0)],
+                   molecule=3)
 
 
 PLACES = {"face_x": (6, 0, 0), "face_y": (0, 5, 0), "face_z": (0, 0, -7), "edge": (6, 5, 0.3), "corner": (-6, 5, 7)}
@@ -46,13 +47,14 @@ def test_clump_across_borders_of_ranks_and_box(tmp_path, newton, tilt):
         lines += dump_lines(tmp_path / f"{place}.dump", columns=FORCES) + ["run 0", "clear"]
     lmp(tmp_path, lines, ranks=2)
     for place in PLACES:
-        assert largest_difference(read_dump(tmp_path / f"{place}.dump")[0][1], model.forces(tetrahedron(), ETA)) < 1e-10, place
+        assert largest_difference(read_dump(tmp_path / f"{place}.dump")[0][1],
+                                  model.forces(tetrahedron(), ETA)) < 1e-10, place
 
 
 @pytest.mark.ranks(4)
 def test_triclinic_clump_on_four_ranks(tmp_path):
-    lines = input_lines(tetrahedron(PLACES["corner"]), f"clumps_only yes {EXACT}", tmp_path / "data", boundary="p p p", box=BOX,
-                        tilt=TILT,
+    lines = input_lines(tetrahedron(PLACES["corner"]), f"clumps_only yes {EXACT}", tmp_path / "data", boundary="p p p",
+                        box=BOX, tilt=TILT,
                         comm="comm_modify cutoff 5")
     lmp(tmp_path, lines + dump_lines(tmp_path / "dump", columns=FORCES) + ["run 0"], ranks=4)
     assert largest_difference(read_dump(tmp_path / "dump")[0][1], model.forces(tetrahedron(), ETA)) < 1e-10
@@ -70,15 +72,17 @@ def test_molecule_ids_from_a_fix_property_atom(simulation):
     """atom_style sphere has no molecule IDs of its own, and ghosts need not carry them."""
     spheres = tetrahedron(PLACES["face_x"])
     sim = simulation()
-    sim.commands(["atom_style sphere", "boundary p p p", "plugin load stokesdynplugin.so", "fix mol all property/atom mol",
-                  "region box block -6 6 -5 5 -7 7", "create_box 1 box", "comm_modify cutoff 5"])
+    sim.commands(["atom_style sphere", "boundary p p p", "plugin load stokesdynplugin.so",
+                  "fix mol all property/atom mol", "region box block -6 6 -5 5 -7 7", "create_box 1 box",
+                  "comm_modify cutoff 5"])
     wrapped = spheres.x.copy()
     wrapped[wrapped[:, 0] >= 6, 0] -= 12
     for i in range(spheres.n):
         sim.command("create_atoms 1 single {!r} {!r} {!r}".format(*map(float, wrapped[i])))
         sim.command(f"set atom {i + 1} diameter {float(2 * spheres.a[i])!r} density 1.0 mol {spheres.molecule[i]}")
         sim.command("set atom {} vx {!r} vy {!r} vz {!r}".format(i + 1, *map(float, spheres.v[i])))
-    sim.commands([f"pair_style stokes_dynamics clumps_only yes {EXACT}", "pair_coeff * *", "fix drag all stokes_dynamics"]).run()
+    sim.commands([f"pair_style stokes_dynamics clumps_only yes {EXACT}", "pair_coeff * *",
+                  "fix drag all stokes_dynamics"]).run()
     assert largest_difference(sim.drag, model.forces(tetrahedron(), ETA)) < 1e-10
 
 
@@ -137,8 +141,9 @@ def test_clump_wider_than_half_the_periodic_box_on_two_ranks_is_an_error(tmp_pat
 def test_a_box_that_shrinks_below_twice_a_clump_is_an_error_in_that_step(simulation, lists, noise):
     """From 10 by 0.1 in a step, along a clump of 4"""
     spheres = Spheres([(3, 5, 5), (5, 5, 5), (7, 5, 5.2), (7, 7.1, 5.2)], molecule=9)
-    sim = simulation(spheres, "cut_off_distance inf visc 1 rigid_clumps yes multiblob 12 fluid_velocity box", fix=False, dt=0.01, boundary="p p p",
-                     box=[(0.0, 10.0)] * 3, tilt=(0.0, 0.0, 0.0), before_pair=f"comm_modify vel yes\nneigh_modify {lists}")
+    sim = simulation(spheres, "cut_off_distance inf visc 1 rigid_clumps yes multiblob 12 fluid_velocity box", fix=False,
+                     dt=0.01, boundary="p p p", box=[(0.0, 10.0)] * 3, tilt=(0.0, 0.0, 0.0),
+                     before_pair=f"comm_modify vel yes\nneigh_modify {lists}")
     sim.commands(f"fix shrink all deform 1 x trate -1.0 remap v\nfix move all stokes_dynamics/overdamped {noise}")
     with pytest.raises(LammpsError, match="molecule 9 is wider than half of the periodic box"):
         sim.run(40)

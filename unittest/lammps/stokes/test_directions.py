@@ -1,5 +1,6 @@
-"""Directions (mu of atom_style dipole, quaternions of atom_style ellipsoid, turns of clumps) turn with their spheres and clumps in fix
-stokes_dynamics/overdamped: closed forms, orders, noise, clumps, one run on several ranks and in pieces, and what is refused."""
+"""Directions (mu of atom_style dipole, quaternions of atom_style ellipsoid, turns of clumps) turn with their spheres
+and clumps in fix stokes_dynamics/overdamped: closed forms, orders, noise, clumps, one run on several ranks and in
+pieces, and what is refused."""
 import functools
 import os
 
@@ -33,15 +34,16 @@ def dipole_lines(folder, x, mu, words, dt, molecule=0, boundary="f f f", box=Non
                      + (" 1" if quaternions is not None else ""))
     if quaternions is not None:
         lines[2:2] = [f"{n} ellipsoids"]
-        lines += ["", "Ellipsoids", ""] + [f"{i + 1} {2 * A!r} {2 * A!r} {2 * A!r} " + " ".join(repr(float(c)) for c in q)
+        lines += ["", "Ellipsoids", ""] + [f"{i + 1} {2 * A!r} {2 * A!r} {2 * A!r} " +
+                                           " ".join(repr(float(c)) for c in q)
                                            for i, q in enumerate(quaternions)]
     data = os.path.join(str(folder), "dipoles.data")
     with open(data, "w") as out:
         out.write("\n".join(lines) + "\n")
     style = "hybrid sphere dipole molecular" + (" ellipsoid" if quaternions is not None else "")
     return ["units lj", f"atom_style {style}", f"boundary {boundary}", "atom_modify map array", "newton on",
-            "plugin load stokesdynplugin.so", f"read_data {data}", f"pair_style stokes_dynamics {words}", "pair_coeff * *",
-            "neigh_modify every 1 delay 0", f"timestep {float(dt)!r}"]
+            "plugin load stokesdynplugin.so", f"read_data {data}", f"pair_style stokes_dynamics {words}",
+            "pair_coeff * *", "neigh_modify every 1 delay 0", f"timestep {float(dt)!r}"]
 
 
 def dipoles(simulation, tmp_path, *arguments, **options):
@@ -61,7 +63,7 @@ def turned(e, w):
             + axis * (axis * e).sum(axis=-1, keepdims=True) * (1 - np.cos(angle)))
 
 
-# --- one sphere, where the answer is known ---------------------------------------------------------------------------------
+# --- one sphere, where the answer is known ----------------------------------------------------------------------------
 
 @pytest.mark.parametrize("scheme", ["euler", "ab2", "midpoint"])
 @pytest.mark.parametrize("words", [POINTS, SHELLS])
@@ -80,7 +82,8 @@ def test_a_shear_turns_by_half_its_rate_and_keeps_the_length(simulation, tmp_pat
 
 @functools.lru_cache(maxsize=None)
 def in_field_and_shear(t):
-    """e(t) of a dipole (1, 0, 0) in a field along y and a flow that turns by 0.3 about x, by Runge and Kutta's method"""
+    """e(t) of a dipole (1, 0, 0) in a field along y and a flow that turns by 0.3 about x, by Runge and Kutta's
+    method"""
     e, n = np.array((1.0, 0, 0)), 500
     def rate(e):
         return np.cross(np.array((0.3, 0, 0)) + np.cross(e, (0, 1.0, 0)), e)
@@ -92,12 +95,13 @@ def in_field_and_shear(t):
     return e
 
 
-@pytest.mark.parametrize("words, scheme, order", [(POINTS, "euler", 1), (POINTS, "ab2", 2), (POINTS, "midpoint", 2), (SHELLS, "ab2", 2),
-                                                  (SHELLS, "midpoint", 2)])
+@pytest.mark.parametrize("words, scheme, order", [(POINTS, "euler", 1), (POINTS, "ab2", 2), (POINTS, "midpoint", 2),
+                                                  (SHELLS, "ab2", 2), (SHELLS, "midpoint", 2)])
 def test_order_in_a_field_and_a_shear(simulation, tmp_path, words, scheme, order):
     errors = []
     for steps in (20, 40, 80):
-        sim = dipoles(simulation, tmp_path, CENTRE, (1, 0, 0), f"{words} relative_tolerance 1e-11 fluid_velocity 0 v_u 0", 2.0 / steps)
+        sim = dipoles(simulation, tmp_path, CENTRE, (1, 0, 0),
+                      f"{words} relative_tolerance 1e-11 fluid_velocity 0 v_u 0", 2.0 / steps)
         sim.commands(f"variable u atom -0.6*z\nfix field all efield 0 {SPIN!r} 0\n{MOVE} scheme {scheme}").run(steps)
         errors.append(np.abs(directions(sim)[0] - in_field_and_shear(2.0)).max())
     assert np.log2(errors[1] / errors[2]) == pytest.approx(order, abs=0.2)
@@ -113,16 +117,18 @@ def test_a_dipole_turns_into_the_field_as_its_law_says(simulation, tmp_path):
 
 
 def test_length_stays_in_a_long_run(simulation, tmp_path):
-    sim = dipoles(simulation, tmp_path, CENTRE, (0.3, -0.2, 1.1), f"{POINTS} fluid_velocity v_u 0 0", 0.01, box=[(-4000.0, 4000.0)] * 3)
-    sim.commands(f"variable u atom z\nfix field all efield 0 0.3 {SPIN!r}\n{MOVE} temperature 0.1 5\nthermo 0").run(20000)
+    sim = dipoles(simulation, tmp_path, CENTRE, (0.3, -0.2, 1.1), f"{POINTS} fluid_velocity v_u 0 0", 0.01,
+                  box=[(-4000.0, 4000.0)] * 3)
+    sim.commands(f"variable u atom z\nfix field all efield 0 0.3 {SPIN!r}\n{MOVE} temperature 0.1 5\nthermo 0").run(
+        20000)
     assert np.linalg.norm(directions(sim)[0]) == pytest.approx(np.sqrt(0.09 + 0.04 + 1.21), rel=4e-16 * 4)
 
 
 def test_in_a_box_that_shears(simulation, tmp_path):
     """A sphere that falls through a face that moves, and comes in at another place; its images do not turn it."""
     mu = np.array([(1.0, 0.3, 0.5)])
-    sim = dipoles(simulation, tmp_path, CENTRE, mu, f"{POINTS} fluid_velocity box far_field_tolerance 1e-9", 0.02, boundary="p p p",
-                  box=[(0.0, 12.0)] * 3, tilt=0.0)
+    sim = dipoles(simulation, tmp_path, CENTRE, mu, f"{POINTS} fluid_velocity box far_field_tolerance 1e-9", 0.02,
+                  boundary="p p p", box=[(0.0, 12.0)] * 3, tilt=0.0)
     sim.commands(f"fix shear all deform 1 xy erate 0.5 remap v flip no\n{MOVE}\nfix fall all addforce 0 -90 0").run(40)
     assert 5 < sim.x[0, 1] < 11
     assert np.abs(directions(sim) - turned(mu, np.array([(0, 0, -0.25 * 0.8)]))).max() < 1e-8
@@ -141,7 +147,7 @@ def test_held_and_spun_spheres_turn_as_told(simulation, tmp_path, scheme):
     assert np.abs(directions(sim)[3] - mu[3]).max() > 1e-3
 
 
-# --- rigid clumps ----------------------------------------------------------------------------------------------------------
+# --- rigid clumps -----------------------------------------------------------------------------------------------------
 
 def rotation_between(before, after):
     """Of clumps [n, m, 3] by their spheres (Kabsch)"""
@@ -151,8 +157,10 @@ def rotation_between(before, after):
     return U @ V
 
 
-@pytest.mark.parametrize("words, options", [(CLUMPS, "scheme euler"), (CLUMPS, "scheme ab2"), (CLUMPS, "scheme midpoint"),
-                                            (CLUMPS + " clumps_only yes", f"temperature {KT} 7"), (CLUMPS, f"temperature {KT} 7"),
+@pytest.mark.parametrize("words, options", [(CLUMPS, "scheme euler"), (CLUMPS, "scheme ab2"),
+                                            (CLUMPS, "scheme midpoint"),
+                                            (CLUMPS + " clumps_only yes", f"temperature {KT} 7"),
+                                            (CLUMPS, f"temperature {KT} 7"),
                                             (f"{SHELLS} rigid_clumps yes", f"temperature {KT} 7"),
                                             (f"{SHELLS} rigid_clumps yes", "")])
 def test_directions_of_a_clump_turn_with_it(simulation, tmp_path, words, options):
@@ -160,13 +168,14 @@ def test_directions_of_a_clump_turn_with_it(simulation, tmp_path, words, options
     mu = np.random.default_rng(3).normal(size=(12, 3))
     sim = dipoles(simulation, tmp_path, clumps.x, mu, f"{words} fluid_velocity v_u 0 0", 0.05, molecule=clumps.molecule)
     before = sim.x.reshape(3, 4, 3)
-    sim.commands(f"variable u atom z\n{MOVE} {options}\nfix field all efield 0 2 0\nfix pull all addforce 0 -3 0").run(60)
+    sim.commands(f"variable u atom z\n{MOVE} {options}\nfix field all efield 0 2 0\nfix pull all addforce 0 -3 0").run(
+        60)
     R = rotation_between(before, sim.x.reshape(3, 4, 3))
     assert np.abs(R - np.eye(3)).max() > 0.3
     assert np.abs(directions(sim) - np.einsum("nij,nmj->nmi", R, mu.reshape(3, 4, 3)).reshape(-1, 3)).max() < 1e-12
 
 
-# --- quaternions, and the turn of a clump ----------------------------------------------------------------------------------
+# --- quaternions, and the turn of a clump -----------------------------------------------------------------------------
 
 QUATERNIONS = "compute q all property/atom quatw quati quatj quatk"
 
@@ -190,11 +199,13 @@ def some_quaternions(n, seed=21):
     return q / np.linalg.norm(q, axis=1)[:, None]
 
 
-QUAT_WAYS = {"euler": (POINTS, "scheme euler", 0, ""), "ab2": (POINTS, "scheme ab2", 0, ""), "midpoint": (SHELLS, "", 0, ""),
-             "noise": (POINTS, f"temperature {KT} 7", 0, ""), "shells with noise": (SHELLS, f"temperature {KT} 7", 0, ""),
+QUAT_WAYS = {"euler": (POINTS, "scheme euler", 0, ""), "ab2": (POINTS, "scheme ab2", 0, ""),
+             "midpoint": (SHELLS, "", 0, ""), "noise": (POINTS, f"temperature {KT} 7", 0, ""),
+             "shells with noise": (SHELLS, f"temperature {KT} 7", 0, ""),
              "spin": (POINTS, "spin all 0.4 0 -1.1", 0, ""),
              "held": (POINTS, "held all", 0, "fix turn all move rotate 3 0 0 0 0.6 0.8 {:.17g}"),
-             "held with midpoint": (POINTS, "scheme midpoint held all", 0, "fix turn all move rotate 3 0 0 0 0.6 0.8 {:.17g}"),
+             "held with midpoint": (POINTS, "scheme midpoint held all", 0,
+                                    "fix turn all move rotate 3 0 0 0 0.6 0.8 {:.17g}"),
              "clumps": (CLUMPS, "", [1, 1, 1, 1, 2, 2, 2, 2, 0, 0, 0, 0], ""),
              "held clumps": (CLUMPS, "held all", [1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3],
                              "fix turn all move rotate 3 0 0 0 0.6 0.8 {:.17g}")}
@@ -205,9 +216,11 @@ def test_quaternions_turn_as_dipoles_do(simulation, tmp_path, way):
     """Dipoles in any direction are fixed in the axes that quaternions say, and these keep their length."""
     words, options, molecule, more = QUAT_WAYS[way]
     x, mu, q = copies(L_OF_FOUR, 3, 6.0).x, np.random.default_rng(3).normal(size=(12, 3)), some_quaternions(12)
-    sim = dipoles(simulation, tmp_path, x, mu, f"{words} fluid_velocity v_u 0 0", 0.05, molecule=molecule, quaternions=q)
+    sim = dipoles(simulation, tmp_path, x, mu, f"{words} fluid_velocity v_u 0 0", 0.05, molecule=molecule,
+                  quaternions=q)
     period = 4.0
-    sim.commands(f"variable u atom z\n{more.format(period)}\nset group all omega 0 {0.6 * 2 * np.pi / period!r} {0.8 * 2 * np.pi / period!r}\n"
+    sim.commands(f"variable u atom z\n{more.format(period)}\nset group all omega 0 {0.6 * 2 * np.pi / period!r} "
+                 f"{0.8 * 2 * np.pi / period!r}\n"
                  f"{MOVE} {options}\nfix field all efield 0 2 0\nfix pull all addforce 0 -3 0\n{QUATERNIONS}\n"
                  "fix read all ave/atom 1 1 1 c_q[*]").run(60)
     now = quaternions(sim)
@@ -217,12 +230,14 @@ def test_quaternions_turn_as_dipoles_do(simulation, tmp_path, way):
     assert np.abs(np.linalg.norm(now, axis=1) - 1).max() < 1e-15
 
 
-@pytest.mark.parametrize("words, options", [(CLUMPS, ""), (CLUMPS, "scheme midpoint"), (CLUMPS + " clumps_only yes", f"temperature {KT} 7"),
+@pytest.mark.parametrize("words, options", [(CLUMPS, ""), (CLUMPS, "scheme midpoint"),
+                                            (CLUMPS + " clumps_only yes", f"temperature {KT} 7"),
                                             (f"{SHELLS} rigid_clumps yes", f"temperature {KT} 7")])
 def test_the_fix_tells_how_a_clump_has_turned(simulation, tmp_path, words, options):
     """Columns 10 to 13: by the same quaternion as its spheres; 1 before the first step; 0 of free spheres"""
     x = copies(L_OF_FOUR, 3, 6.0).x
-    sim = dipoles(simulation, tmp_path, x, (0, 0, 1), f"{words} fluid_velocity v_u 0 0", 0.05, molecule=[1, 1, 1, 1, 2, 2, 2, 2, 0, 0, 0, 0])
+    sim = dipoles(simulation, tmp_path, x, (0, 0, 1), f"{words} fluid_velocity v_u 0 0", 0.05,
+                  molecule=[1, 1, 1, 1, 2, 2, 2, 2, 0, 0, 0, 0])
     sim.commands(f"variable u atom z\n{MOVE} {options}\nfix pull all addforce 0 -3 0").run(0)
     assert (sim.fix_rows("move")[:, 9:13] == [[1, 0, 0, 0]] * 8 + [[0, 0, 0, 0]] * 4).all()
     before = sim.x[:8].reshape(2, 4, 3)
@@ -236,27 +251,33 @@ def test_the_fix_tells_how_a_clump_has_turned(simulation, tmp_path, words, optio
 
 @pytest.mark.nothing_to_test_if(lammps_source(), "LAMMPS of 2021 has no atom style with a quaternion for each atom")
 def test_quaternions_of_bonded_particles_turn_and_drive_their_bonds(simulation, tmp_path):
-    """atom_style bpm/sphere: steadily under a torque along its own axes; and bpm/rotational pulls back two that have turned apart."""
+    """atom_style bpm/sphere: steadily under a torque along its own axes; and bpm/rotational pulls back two that have
+    turned apart."""
     def two(bonds, options):
         sim = simulation().commands(
-            "units lj\natom_style bpm/sphere\nboundary f f f\natom_modify map array\nnewton on off\nplugin load stokesdynplugin.so\n"
+            "units lj\natom_style bpm/sphere\nboundary f f f\natom_modify map array\nnewton on off\n"
+            "plugin load stokesdynplugin.so\n"
             "special_bonds lj 0 1 1 coul 1 1 1\nregion box block -20 20 -20 20 -20 20\n"
             "create_box 1 box bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 4\n"
-            f"create_atoms 1 single 0 0 0\ncreate_atoms 1 single {2 * A!r} 0 0\nset group all diameter {2 * A!r} density 1\n"
-            f"comm_modify vel yes cutoff 6\npair_style stokes_dynamics {POINTS}\npair_coeff * *\n{bonds}\ntimestep 1e-3\n"
+            f"create_atoms 1 single 0 0 0\ncreate_atoms 1 single {2 * A!r} 0 0\n"
+            f"set group all diameter {2 * A!r} density 1\n"
+            f"comm_modify vel yes cutoff 6\npair_style stokes_dynamics {POINTS}\npair_coeff * *\n{bonds}\n"
+            "timestep 1e-3\n"
             f"group first id 1\n{QUATERNIONS}\nfix read all ave/atom 1 1 1 c_q[*]\n{MOVE} {options}")
         return sim
     sim = two("", f"torque first 0 0 {SPIN!r} body yes")
     sim.run(500)
     q = quaternions(sim)
-    assert q[0] == pytest.approx([np.cos(0.25), 0, 0, np.sin(0.25)], abs=1e-3) and abs(q[1, 3]) > 1e-3    # the other one in its flow
-    bonds = "bond_style bpm/rotational smooth no\nbond_coeff 1 20 20 20 20 1e6 1e6 1e6 1e6 0 0 0 0\ncreate_bonds single/bond 1 1 2"
+    # the other one in its flow
+    assert q[0] == pytest.approx([np.cos(0.25), 0, 0, np.sin(0.25)], abs=1e-3) and abs(q[1, 3]) > 1e-3
+    bonds = ("bond_style bpm/rotational smooth no\nbond_coeff 1 20 20 20 20 1e6 1e6 1e6 1e6 0 0 0 0\n"
+             "create_bonds single/bond 1 1 2")
     free = two("", "torque first 0 0 1").run(200).atom("omega")[0, 2]
     bound = two(bonds, "torque first 0 0 1").run(2000).atom("omega")
     assert abs(bound[0, 2]) < 0.5 * free and bound[0, 2] == pytest.approx(bound[1, 2], rel=0.05)
 
 
-# --- noise -----------------------------------------------------------------------------------------------------------------
+# --- noise ------------------------------------------------------------------------------------------------------------
 
 def steps_and_turns(sim, steps):
     """Displacements and changes of direction [steps, n, 6] of single steps"""
@@ -268,7 +289,8 @@ def steps_and_turns(sim, steps):
     return np.array(out)
 
 
-@pytest.mark.parametrize("scene, words", [("open", ""), ("alone", "clumps_only yes"), ("periodic", "far_field_tolerance 1e-5")])
+@pytest.mark.parametrize("scene, words", [("open", ""), ("alone", "clumps_only yes"),
+                                          ("periodic", "far_field_tolerance 1e-5")])
 def test_translation_and_rotation_are_drawn_together(simulation, tmp_path, scene, words):
     """Covariance of steps d and turns w x e of three near spheres against their mobility, in a box by unit loads"""
     e = np.array([(1.0, 0, 0), (0, 1.0, 0), (0.6, 0, 0.8)])
@@ -344,9 +366,10 @@ def test_langevin_of_dipoles_in_a_field(simulation, tmp_path):
     assert directions(sim)[:, 2].mean() == pytest.approx(1 / np.tanh(2) - 0.5, abs=4 * 0.43 / np.sqrt(n))
 
 
-# --- one run, however it is made -------------------------------------------------------------------------------------------
+# --- one run, however it is made --------------------------------------------------------------------------------------
 
-COLUMNS = "xu yu zu mux muy muz " + " ".join(f"c_q[{k}]" for k in range(1, 5)) + " " + " ".join(f"f_move[{k}]" for k in range(10, 14))
+COLUMNS = ("xu yu zu mux muy muz " + " ".join(f"c_q[{k}]" for k in range(1, 5)) + " " +
+           " ".join(f"f_move[{k}]" for k in range(10, 14)))
 END = [QUATERNIONS] + dump_lines("end.dump", every=20, columns=COLUMNS)
 WAYS = {"noise in shear": ("p p p", f"{POINTS} fluid_velocity box", "temperature 1.5 7", 0,
                            ["fix shear all deform 1 xy erate 0.5 remap v"]),
@@ -359,9 +382,10 @@ def script(folder, way, runs):
     x = copies(L_OF_FOUR, 3, 5.0).x + 1.0
     mu = np.random.default_rng(9).normal(size=(12, 3))
     box = [(0.0, 12.0)] * 3 if boundary[0] == "p" else None
-    lines = dipole_lines(folder, x, mu, words, 0.02, molecule=molecule, boundary=boundary, box=box, tilt=0.0 if box else None,
-                         quaternions=some_quaternions(12))
-    return lines + ["fix field all efield 0 4 1", "fix push all propel/self dipole 2.0", *more, f"{MOVE} {options}"] + runs
+    lines = dipole_lines(folder, x, mu, words, 0.02, molecule=molecule, boundary=boundary, box=box,
+                         tilt=0.0 if box else None, quaternions=some_quaternions(12))
+    return lines + ["fix field all efield 0 4 1", "fix push all propel/self dipole 2.0", *more,
+                    f"{MOVE} {options}"] + runs
 
 
 @pytest.mark.ranks(2)
@@ -382,11 +406,12 @@ def test_a_run_in_pieces_is_the_whole_run(tmp_path, way):
     assert np.abs(again - whole).max() < 1e-12
 
 
-# --- what is refused -------------------------------------------------------------------------------------------------------
+# --- what is refused --------------------------------------------------------------------------------------------------
 
 def test_directions_of_spheres_that_do_not_turn_are_refused(simulation, tmp_path):
     sim = dipoles(simulation, tmp_path, CENTRE, (1, 0, 0), f"cut_off_distance inf visc {ETA}", 0.1)
-    with pytest.raises(LammpsError, match="has directions .the dipole of atom 1.*with rotation no spheres do not turn: use"):
+    with pytest.raises(LammpsError,
+                       match="has directions .the dipole of atom 1.*with rotation no spheres do not turn: use"):
         sim.commands(MOVE).run(0)
     sim = dipoles(simulation, tmp_path, CENTRE, (0, 0, 0), f"cut_off_distance inf visc {ETA}", 0.1)
     sim.commands(MOVE).run(1)

@@ -66,12 +66,14 @@ def test_residual_is_that_of_the_force_returned(simulation):
     sim = simulation(spheres, f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-3").run()
     D = six_pi_eta_a(spheres)
     r = D * (-spheres.v - (model.mobility(spheres.x, spheres.a, ETA) @ sim.drag.ravel()).reshape(-1, 3))
-    assert sim.residual == pytest.approx(np.linalg.norm(r) / np.linalg.norm(D * spheres.v), abs=1e-7)    # products of floats
+    # products of floats
+    assert sim.residual == pytest.approx(np.linalg.norm(r) / np.linalg.norm(D * spheres.v), abs=1e-7)
 
 
 def test_fix_of_a_subset_reports_that_subset(simulation):
     spheres = five()
-    sim = simulation(spheres, EXACT, before_pair="group some id 2 4").commands("fix part some stokes_dynamics apply no").run()
+    sim = simulation(spheres, EXACT,
+                     before_pair="group some id 2 4").commands("fix part some stokes_dynamics apply no").run()
     F, rows = model.forces(spheres, ETA), sim.fix_rows("part")
     assert largest_difference(rows[[1, 3], 0:3], F[[1, 3]]) < 1e-10
     assert np.abs(rows[[0, 2, 4]]).max() == 0.0
@@ -82,19 +84,22 @@ def test_fix_of_a_subset_reports_that_subset(simulation):
 
 def test_fix_of_a_subset_applies_to_that_subset(simulation):
     spheres = five()
-    sim = simulation(spheres, EXACT, fix=False, before_pair="group some id 2 4").commands("fix part some stokes_dynamics").run()
+    sim = simulation(spheres, EXACT, fix=False,
+                     before_pair="group some id 2 4").commands("fix part some stokes_dynamics").run()
     F = model.forces(spheres, ETA)
     assert largest_difference(sim.f[[1, 3]], F[[1, 3]]) < 1e-10
     assert np.abs(sim.f[[0, 2, 4]]).max() == 0.0
 
 
-WHO_ADDS = [("no", "", True), ("no", "apply yes", True), ("no", "apply no", False), ("yes", "", True), ("yes", "apply no", True)]
+WHO_ADDS = [("no", "", True), ("no", "apply yes", True), ("no", "apply no", False), ("yes", "", True),
+            ("yes", "apply no", True)]
 
 
 @pytest.mark.parametrize("add_force,apply,added", WHO_ADDS)
 def test_force_is_added_once_or_not_at_all_and_reported_always(simulation, add_force, apply, added):
     spheres = five()
-    sim = simulation(spheres, f"{EXACT} add_force {add_force}", fix=False).commands(f"fix drag all stokes_dynamics {apply}").run()
+    sim = simulation(spheres, f"{EXACT} add_force {add_force}",
+                     fix=False).commands(f"fix drag all stokes_dynamics {apply}").run()
     F = model.forces(spheres, ETA)
     assert largest_difference(sim.f, F) < 1e-10 if added else np.abs(sim.f).max() == 0.0
     assert largest_difference(sim.drag, F) < 1e-10
@@ -147,7 +152,8 @@ def test_drag_has_neither_energy_nor_virial(simulation):
 
 def test_compute_pair_reports_iterations_residual_unconverged_and_dissipation(simulation):
     spheres = five()
-    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-14 max_iter 3 precondition none")
+    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-14 max_iter 3 "
+                              "precondition none")
     sim.commands("compute p all pair stokes_dynamics\nthermo_style custom step c_p c_p[1]")
     sim.commands("fix move all nve/sphere\ntimestep 1e-4").run(2)
     vector = sim.compute_vector("p", 4)
@@ -157,9 +163,11 @@ def test_compute_pair_reports_iterations_residual_unconverged_and_dissipation(si
 
 
 def test_reports_do_not_depend_on_ranks(tmp_path):
-    lines = input_lines(five(), f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-3", tmp_path / "data")
+    lines = input_lines(five(), f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-3",
+                        tmp_path / "data")
     lines += ["compute p all pair stokes_dynamics",
-              "thermo_style custom step c_p[1] c_p[2] c_p[3] c_p[4] f_drag " + " ".join(f"f_drag[{k}]" for k in range(1, 8)),
+              "thermo_style custom step c_p[1] c_p[2] c_p[3] c_p[4] f_drag " +
+              " ".join(f"f_drag[{k}]" for k in range(1, 8)),
               'thermo_modify format float "%.15g" norm no', "run 0"]
     rows = []
     for ranks in (1, 2):
@@ -186,15 +194,18 @@ def test_fix_without_the_pair_style_is_an_error(simulation):
 
 
 def test_rows_of_many_fixes_migrate(tmp_path):
-    """Four thousand numbers with each atom, more than LAMMPS's buffers hold unannounced: what comes to the other rank is what left."""
+    """Four thousand numbers with each atom, more than LAMMPS's buffers hold unannounced: what comes to the other rank
+    is what left."""
     spheres = Spheres([(-3, 0, 0), (-1, 0, 0), (-0.5, 3, 0), (2, 0, 3)], v=(5.0, 0.1, 0.0))
     ends = []
     for ranks in (1, 2):
-        lines = input_lines(spheres, "cut_off_distance inf visc 1", str(tmp_path / "data"), fix=False, box=[(-20.0, 20.0)] * 3, dt=0.01,
-                            before_pair="neighbor 0.1 bin\nneigh_modify delay 0")
+        lines = input_lines(spheres, "cut_off_distance inf visc 1", str(tmp_path / "data"), fix=False,
+                            box=[(-20.0, 20.0)] * 3, dt=0.01, before_pair="neighbor 0.1 bin\nneigh_modify delay 0")
         lines = ["processors * 1 1"] + lines
-        lines += [f"fix report{k} all stokes_dynamics apply no" for k in range(400)] + ["fix drag all stokes_dynamics", "fix move all nve"]
-        lmp(tmp_path, lines + dump_lines(tmp_path / "end", every=40, columns="x y z f_report0[1] f_report99[1] f_report399[3]") + ["run 40"], ranks)
+        lines += [f"fix report{k} all stokes_dynamics apply no" for k in range(400)] + ["fix drag all stokes_dynamics",
+                                                                                        "fix move all nve"]
+        lmp(tmp_path, lines + dump_lines(tmp_path / "end", every=40,
+                                         columns="x y z f_report0[1] f_report99[1] f_report399[3]") + ["run 40"], ranks)
         ends.append(read_dump(tmp_path / "end")[-1][1])
     assert (ends[0][:, 0] > 0).sum() > (spheres.x[:, 0] > 0).sum()
     assert np.abs(ends[1] - ends[0]).max() < 1e-12
@@ -211,7 +222,8 @@ RIGID = ["fix bodies some rigid molecule", "fix bodies some rigid/small molecule
 def test_fix_that_reads_forces_before_the_drag_is_there_is_an_error(simulation, rigid):
     """It would begin every run with a kick without drag, and a run in two pieces would not be that in one."""
     style = "cut_off_distance inf visc 1.3 algorithm 2"
-    sim = simulation(two_dumbbells(), style, fix=False).commands(["group some id 1 2", rigid, "fix drag all stokes_dynamics"])
+    sim = simulation(two_dumbbells(), style,
+                     fix=False).commands(["group some id 1 2", rigid, "fix drag all stokes_dynamics"])
     with pytest.raises(LammpsError, match="stands before this fix in the input.*define fix drag first"):
         sim.run()
     sim.commands(["unfix drag", "fix drag all stokes_dynamics apply no"]).run(1)
@@ -219,12 +231,13 @@ def test_fix_that_reads_forces_before_the_drag_is_there_is_an_error(simulation, 
     sim.commands(["unfix drag", "unfix bodies", "fix drag all stokes_dynamics", rigid]).run(1)
 
 
-# --- commands that ask the pair style for forces once more ------------------------------------------------------------------
+# --- commands that ask the pair style for forces once more ------------------------------------------------------------
 
 
 @pytest.mark.parametrize("add_force", ["yes", "no"])
 def test_fix_numdiff_changes_nothing(simulation, add_force):
-    """It computes the pair style for displaced atoms in every step; energies have nothing of a drag, and the forces of the step stay."""
+    """It computes the pair style for displaced atoms in every step; energies have nothing of a drag, and the forces of
+    the step stay."""
     style = f"cut_off_distance inf visc 1.3 algorithm 2 update_every 3 add_force {add_force}"
     ends = []
     for numdiff in ([], ["fix shifted all numdiff 1 0.01", "thermo 1"]):

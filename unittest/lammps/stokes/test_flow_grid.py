@@ -64,7 +64,8 @@ def test_viscosity_of_the_grid(simulation, shear):
 
 
 @pytest.mark.parametrize("style", ["cut_off_distance inf rotation yes", "clumps_only yes rigid_clumps yes",
-                                   "clumps_only yes rigid_clumps yes rotation yes", "clumps_only yes rigid_clumps yes shell 12"])
+                                   "clumps_only yes rigid_clumps yes rotation yes",
+                                   "clumps_only yes rigid_clumps yes shell 12"])
 def test_torques_and_clumps_have_the_gradient(simulation, shear, style):
     """Against the formula's, which is differenced over a radius to either side: exact in a linear flow, to rounding."""
     spheres = Spheres(np.vstack([chain(4, 1.5, axis=0).x, (1, 2, 3) + chain(3, 1.6, axis=1).x, [(5, 5, -5)]]), A,
@@ -94,7 +95,8 @@ def test_a_series_follows_the_time(simulation, tmp_path, binary):
     flow = np.stack([linear(nodes(AXES)) * (1 + 30 * t) for t in times])
     flow_grid.write(tmp_path / "series.grid", AXES, flow, times=times, beyond={"time": "clamp"}, binary=binary)
     spheres = cloud()
-    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} fluid_velocity grid {tmp_path}/series.grid {EXACT}", dt=0.01)
+    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} fluid_velocity grid {tmp_path}/series.grid {EXACT}",
+                     dt=0.01)
     sim.commands(dump_lines(tmp_path / "dump")).run(3).run(4).close()      # nothing integrates: only the fluid changes
     steps = dict(read_dump(tmp_path / "dump"))
     assert sorted(steps) == list(range(8))
@@ -125,8 +127,10 @@ def vortices(path, seed=4, times=None):
 def stirred(folder, words="update_every 3", **options):
     """Spheres that go with the vortices through a periodic box, and leave it."""
     spheres = Spheres(np.random.default_rng(8).uniform(-4, 4, (30, 3)), 0.3)
-    return input_lines(spheres, f"cut_off_distance 2 taper wendland visc 0.8 fluid_velocity grid {folder}/vortices.grid {EXACT} rotation yes {words}",
-                       folder / "data", boundary="p p p", box=[(-4.0, 4.0)] * 3, dt=0.02, before_pair="neigh_modify every 1 delay 0", **options) + ["fix move all nve/sphere"]
+    return input_lines(spheres, "cut_off_distance 2 taper wendland visc 0.8 fluid_velocity grid "
+                                f"{folder}/vortices.grid {EXACT} rotation yes {words}",
+                       folder / "data", boundary="p p p", box=[(-4.0, 4.0)] * 3, dt=0.02,
+                       before_pair="neigh_modify every 1 delay 0", **options) + ["fix move all nve/sphere"]
 
 
 COLUMNS = "xu yu zu vx vy vz omegax omegay omegaz f_drag[1] f_drag[2] f_drag[3]"
@@ -151,7 +155,8 @@ def state(sim):
 @pytest.mark.parametrize("stop", [30, 31])
 @pytest.mark.parametrize("way", ["runs", "restart", "timestep"])
 def test_a_broken_run_goes_on_with_the_series(simulation, tmp_path, stop, way):
-    """Also from a restart file, and where the steps before it had another length: LAMMPS of 2021 does not store its time."""
+    """Also from a restart file, and where the steps before it had another length: LAMMPS of 2021 does not store its
+    time."""
     vortices(tmp_path / "vortices.grid", times=[0, 0.5, 0.7, 1.1])
     begin = stirred(tmp_path) + (["timestep 0.01", "run 9", "timestep 0.02"] if way == "timestep" else [])
     first = 9 * (way == "timestep")
@@ -159,7 +164,8 @@ def test_a_broken_run_goes_on_with_the_series(simulation, tmp_path, stop, way):
     sim = simulation().commands(begin).run(stop - first)
     if way != "runs":
         sim.command(f"write_restart {tmp_path}/mid")
-        sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", "neigh_modify every 1 delay 0", "timestep 0.02", "fix drag all stokes_dynamics",
+        sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid",
+                                     "neigh_modify every 1 delay 0", "timestep 0.02", "fix drag all stokes_dynamics",
                                      "fix move all nve/sphere"])
     assert np.abs(state(sim.run(60 - stop)) - whole).max() < 1e-10
 
@@ -187,7 +193,7 @@ def test_another_file_of_the_same_name_is_another_flow(simulation, tmp_path):
     assert largest_difference(second, again) < 1e-14 and np.abs(again - first).max() > 0.1 * np.abs(first).max()
 
 
-# --- outside of the grid ---------------------------------------------------------------------------------------------------
+# --- outside of the grid ----------------------------------------------------------------------------------------------
 
 def channel(path, ends):
     x = nodes(AXES)
@@ -203,7 +209,8 @@ def test_a_sphere_outside_of_the_grid_is_an_error(tmp_path, ranks):
     lines = input_lines(spheres, words, tmp_path / "data", box=[(-20.0, 20.0)] * 3)
     said = lmp(tmp_path, lines + ["run 0"], ranks=ranks, succeed=False)
     assert said.code != 0
-    for text in ("Pair style stokes_dynamics: step 0, atom 2: keyword fluid_velocity: its position -1 9.5 2 is outside of the grid in",
+    for text in ("Pair style stokes_dynamics: step 0, atom 2: keyword fluid_velocity: its position -1 9.5 2 is outside "
+                 "of the grid in",
                  "channel.grid', whose y goes from -9 to 9", "clamp or periodic"):
         assert text in " ".join(said.log.split()), said.log[-900:]
 
@@ -220,7 +227,8 @@ def test_those_that_take_no_part_may_be_anywhere(simulation, tmp_path):
 def test_beyond_the_grid(simulation, tmp_path, ends):
     channel(tmp_path / "channel.grid", ends)
     spheres = Spheres([(1, 2, 3), (-1, 15, -13.0)], A)
-    sim = simulation(spheres, f"cut_off_distance 0.1 taper wendland visc {ETA} fluid_velocity grid {tmp_path}/channel.grid {EXACT}",
+    sim = simulation(spheres, f"cut_off_distance 0.1 taper wendland visc {ETA} fluid_velocity grid "
+                              f"{tmp_path}/channel.grid {EXACT}",
                      box=[(-20.0, 20.0)] * 3).run()
     u = linear(np.clip(spheres.x, -9, 9)) if ends == "clamp" else PUSH
     assert largest_difference(sim.drag, 6 * np.pi * ETA * A * u * np.ones((2, 3))) < 1e-12
@@ -228,14 +236,16 @@ def test_beyond_the_grid(simulation, tmp_path, ends):
 
 def test_a_series_that_has_ended_is_an_error(simulation, tmp_path):
     flow_grid.write(tmp_path / "short.grid", AXES, np.stack([linear(nodes(AXES))] * 2), times=[0.0, 0.025])
-    sim = simulation(cloud(), f"cut_off_distance inf visc {ETA} fluid_velocity grid {tmp_path}/short.grid {EXACT}", dt=0.01)
+    sim = simulation(cloud(), f"cut_off_distance inf visc {ETA} fluid_velocity grid {tmp_path}/short.grid {EXACT}",
+                     dt=0.01)
     with pytest.raises(LammpsError) as error:
         sim.run(5)
-    for text in ("keyword fluid_velocity: step 3", "the time 0.03 is outside of the series in", "short.grid", "from 0 to 0.025"):
+    for text in ("keyword fluid_velocity: step 3", "the time 0.03 is outside of the series in", "short.grid",
+                 "from 0 to 0.025"):
         assert text in str(error.value)
 
 
-# --- files that are none ---------------------------------------------------------------------------------------------------
+# --- files that are none ----------------------------------------------------------------------------------------------
 
 GOOD = """stokesdyn_grid 1
 # a comment
@@ -258,29 +268,42 @@ BAD = {
     "axis twice": (lambda text: text.replace("# a comment", "x 2 0 1"), ["line 3: axis x is given twice"]),
     "axis missing": (lambda text: text.replace("z 1 0", ""), ["line 9: no axis z"]),
     "no columns": (lambda text: text.replace("columns ux uy uz", ""), ["line 9: no 'columns"]),
-    "columns": (lambda text: text.replace("ux uy uz", "ux uz uy"), ["line 8: the columns are 'ux uy uz' or 'ux uy uz eta', not 'uz'"]),
+    "columns": (lambda text: text.replace("ux uy uz", "ux uz uy"), ["line 8: the columns are 'ux uy uz' or 'ux uy uz "
+                                                                    "eta', not 'uz'"]),
     "two columns": (lambda text: text.replace("ux uy uz", "ux uy"), ["line 8: the columns are"]),
-    "kind of rows": (lambda text: text.replace("rows text", "rows hex"), ["line 9: 'rows' is followed by 'text' or 'binary'"]),
+    "kind of rows": (lambda text: text.replace("rows text",
+                                               "rows hex"), ["line 9: 'rows' is followed by 'text' or 'binary'"]),
     "header only": (lambda text: text[:text.index("time")], ["ends within its header"]),
-    "nodes": (lambda text: text.replace("x 3", "x 3.5"), ["line 3: axis x: the number of nodes '3.5' must be an integer >= 1"]),
+    "nodes": (lambda text: text.replace("x 3", "x 3.5"), ["line 3: axis x: the number of nodes '3.5' must be "
+                                                          "an integer >= 1"]),
     "no nodes": (lambda text: text.replace("x 3 0 4", "x"), ["line 3: axis x: the number of nodes ''"]),
     "negative nodes": (lambda text: text.replace("x 3", "x -3"), ["line 3: axis x: the number of nodes '-3'"]),
-    "backwards": (lambda text: text.replace("x 3 0 4", "x 3 4 0"), ["line 3: axis x: its last node 0 must be above the first, 4"]),
-    "not ascending": (lambda text: text.replace("x 3 0 4", "x 3 0 4 4"), ["line 3: axis x: node 3 at 4 is not above the one before it, 4"]),
-    "frames": (lambda text: text.replace("time 2 0 0.5", "time 2 0.5 0.5"), ["line 6: axis time: node 2 at 0.5 is not above"]),
+    "backwards": (lambda text: text.replace("x 3 0 4",
+                                            "x 3 4 0"), ["line 3: axis x: its last node 0 must be above the first, 4"]),
+    "not ascending": (lambda text: text.replace("x 3 0 4",
+                                                "x 3 0 4 4"), ["line 3: axis x: node 3 at 4 is not above the "
+                                                               "one before it, 4"]),
+    "frames": (lambda text: text.replace("time 2 0 0.5",
+                                         "time 2 0.5 0.5"), ["line 6: axis time: node 2 at 0.5 is not above"]),
     "coordinates": (lambda text: text.replace("x 3 0 4", "x 4 0 4 5"), ["line 3: axis x: 3 coordinates for 4 nodes"]),
-    "nan on an axis": (lambda text: text.replace("x 3 0 4", "x 3 0 nan"), ["line 3: axis x: 'nan' is not a finite number"]),
-    "word on an axis": (lambda text: text.replace("clamp", "wrap"), ["line 4: axis y: 'wrap' is neither a number nor error, clamp, periodic"]),
+    "nan on an axis": (lambda text: text.replace("x 3 0 4",
+                                                 "x 3 0 nan"), ["line 3: axis x: 'nan' is not a finite number"]),
+    "word on an axis": (lambda text: text.replace("clamp", "wrap"), ["line 4: axis y: 'wrap' is neither a number nor "
+                                                                     "error, clamp, periodic"]),
     "two words": (lambda text: text.replace("clamp", "clamp periodic"), ["line 4: axis y: unexpected 'periodic'"]),
-    "huge": (lambda text: text.replace("x 3", "x 900000000"), ["line 3: axis x: the file is too short for so many nodes"]),
-    "vast": (lambda text: text.replace("x 3", "x 90").replace("y 2", "y 90").replace("time 2", "time 90"), ["line 9: after it come", "too few"]),
+    "huge": (lambda text: text.replace("x 3",
+                                       "x 900000000"), ["line 3: axis x: the file is too short for so many nodes"]),
+    "vast": (lambda text: text.replace("x 3", "x 90").replace("y 2", "y 90").replace("time 2", "time 90"), [
+        "line 9: after it come", "too few"]),
     "cut off": (lambda text: text[:text.index("11 5.5")] + "      \n" * 4, ["line 24: ends after 11 of 12 rows"]),
     "too many": (lambda text: text + "1 2 3\n", ["line 22: more than the 12 rows"]),
     "nan": (lambda text: text.replace("3 1.5 -3", "3 nan -3"), ["line 13: uy is not a finite number: '3 nan -3'"]),
     "letters": (lambda text: text.replace("3 1.5 -3", "3 1.5x -3"), ["line 13: no number for uy: '3 1.5x -3'"]),
     "two numbers": (lambda text: text.replace("3 1.5 -3", "3 1.5   "), ["line 13: no number for uz: '3 1.5"]),
-    "four numbers": (lambda text: text.replace("3 1.5 -3", "3 1.5 -3 1"), ["line 13: more than 3 numbers: '3 1.5 -3 1'"]),
-    "seam": (lambda text: text.replace("x 3 0 4", "x 3 0 4 periodic"), ["axis x is periodic, but its last node", "differs by"]),
+    "four numbers": (lambda text: text.replace("3 1.5 -3",
+                                               "3 1.5 -3 1"), ["line 13: more than 3 numbers: '3 1.5 -3 1'"]),
+    "seam": (lambda text: text.replace("x 3 0 4", "x 3 0 4 periodic"), ["axis x is periodic, but its last node",
+                                                                        "differs by"]),
 }
 
 
@@ -301,7 +324,8 @@ def test_a_file_that_is_no_grid_is_told_with_its_line(simulation, tmp_path, name
 
 def test_the_good_file_is_read(simulation, tmp_path):
     (tmp_path / "good.grid").write_text(GOOD + ROWS.replace("\n", "\r\n"))
-    sim = simulation(Spheres([(1, 0, 7)], A), f"cut_off_distance inf visc {ETA} fluid_velocity grid {tmp_path}/good.grid").run()
+    sim = simulation(Spheres([(1, 0, 7)], A),
+                     f"cut_off_distance inf visc {ETA} fluid_velocity grid {tmp_path}/good.grid").run()
     assert sim.drag[0] == pytest.approx(6 * np.pi * ETA * A * np.array([2.0, 1.0, -2.0]), rel=1e-12)
 
 
@@ -314,7 +338,8 @@ def test_binary_rows_that_are_cut_off_or_no_numbers(simulation, tmp_path):
     u = linear(nodes(AXES))
     u[1, 2, 3, 1] = np.inf
     flow_grid.write(tmp_path / "bad.grid", AXES, u, binary=True)
-    assert f"row {3 + 7 * (2 + 5 * 1) + 1} after line 6: uy is inf, no finite number" in refused(simulation, tmp_path / "bad.grid")
+    assert f"row {3 + 7 * (2 + 5 * 1) + 1} after line 6: uy is inf, no finite number" in refused(
+        simulation, tmp_path / "bad.grid")
     flow_grid.write(tmp_path / "bad.grid", AXES, linear(nodes(AXES)), -1.0 + 0 * u[..., 0], binary=True)
     assert "row 1 after line 6: eta is -1, and must be > 0" in refused(simulation, tmp_path / "bad.grid")
     whole = (tmp_path / "bad.grid").read_bytes()
@@ -324,15 +349,19 @@ def test_binary_rows_that_are_cut_off_or_no_numbers(simulation, tmp_path):
 
 
 def test_bytes_of_a_file_are_printed_so_that_they_can_be(simulation, tmp_path):
-    """No byte of a message is beyond UTF-8 or a control character, which terminals and LAMMPS's Python module would choke on."""
-    for bad, shown in ((b"x 2 -20 \xfe", "\\xfe"), (b"x 2 -20 \x1b[31m", "\\x1b[31m"), ("x 2 -20 ü".encode(), "ü"), (b"x 2 -20 \xed\xa0\x80", "\\xed\\xa0\\x80")):
-        (tmp_path / "bad.grid").write_bytes(b"stokesdyn_grid 1\n" + bad + b"\ny 1 0\nz 1 0\ncolumns ux uy uz\nrows text\n0 0 0\n0 0 0\n")
+    """No byte of a message is beyond UTF-8 or a control character, which terminals and LAMMPS's Python module would
+    choke on."""
+    for bad, shown in ((b"x 2 -20 \xfe", "\\xfe"), (b"x 2 -20 \x1b[31m", "\\x1b[31m"), ("x 2 -20 ü".encode(), "ü"),
+                       (b"x 2 -20 \xed\xa0\x80", "\\xed\\xa0\\x80")):
+        (tmp_path / "bad.grid").write_bytes(b"stokesdyn_grid 1\n" + bad + b"\ny 1 0\nz 1 0\ncolumns ux uy uz\n"
+                                            b"rows text\n0 0 0\n0 0 0\n")
         assert shown in refused(simulation, tmp_path / "bad.grid")
 
 
 def test_a_viscosity_must_be_one_and_must_be_there(simulation, tmp_path):
     text = (GOOD + ROWS).replace("uz\n", "uz eta\n", 1)
-    (tmp_path / "bad.grid").write_text("".join(line + " 0\n" if k > 8 else line + "\n" for k, line in enumerate(text.splitlines())))
+    (tmp_path / "bad.grid").write_text("".join(line + " 0\n" if k > 8 else line + "\n"
+                                               for k, line in enumerate(text.splitlines())))
     assert "line 10: the viscosity 0 must be > 0" in refused(simulation, tmp_path / "bad.grid")
     (tmp_path / "bad.grid").write_text(GOOD + ROWS)
     for style, expected in ((f"visc grid fluid_velocity grid {tmp_path}/bad.grid", "bad.grid' has no viscosity"),
@@ -346,14 +375,16 @@ def test_a_viscosity_must_be_one_and_must_be_there(simulation, tmp_path):
 @pytest.mark.parametrize("ranks", [2])
 def test_every_rank_ends_with_the_error(tmp_path, ranks):
     (tmp_path / "bad.grid").write_text(GOOD)
-    said = lmp(tmp_path, input_lines(cloud(), f"cut_off_distance inf visc 1 fluid_velocity grid {tmp_path}/bad.grid", tmp_path / "data"),
+    said = lmp(tmp_path, input_lines(cloud(), f"cut_off_distance inf visc 1 fluid_velocity grid {tmp_path}/bad.grid",
+                                     tmp_path / "data"),
                ranks=ranks, succeed=False)
     assert said.code != 0 and "line 9: after it come" in " ".join(said.log.split())
 
 
-# --- from VTK --------------------------------------------------------------------------------------------------------------
+# --- from VTK ---------------------------------------------------------------------------------------------------------
 
-# VTK is half a gigabyte, which examples/openfoam_step installs for itself and the tests do not: this is a test where it is there.
+# VTK is half a gigabyte, which examples/openfoam_step installs for itself and the tests do not: this is a test where it
+# is there.
 if importlib.util.find_spec("vtk"):
     def test_a_mesh_of_vtk_becomes_a_grid(simulation, tmp_path):
         """A linear flow on tetrahedra is linear in each of them, and so it is on the grid."""
@@ -373,10 +404,13 @@ if importlib.util.find_spec("vtk"):
         writer.SetFileName(str(tmp_path / "mesh.vtu"))
         writer.SetInputData(mesh.GetOutput())
         writer.Write()
-        said = subprocess.run([sys.executable, str(EXAMPLES / "flow_grid.py"), str(tmp_path / "mesh.vtu"), "-o", str(tmp_path / "mesh.grid"),
-                               "--nodes", "9", "10", "11", "--velocity", "flow", "--binary", "--beyond", "x", "clamp"],
+        said = subprocess.run([sys.executable, str(EXAMPLES / "flow_grid.py"), str(tmp_path / "mesh.vtu"), "-o",
+                               str(tmp_path / "mesh.grid"), "--nodes", "9", "10", "11", "--velocity", "flow",
+                               "--binary", "--beyond", "x", "clamp"],
                               capture_output=True, text=True)
         assert said.returncode == 0 and "990 of 990 nodes" in said.stdout, said
         spheres = cloud()
-        sim = simulation(spheres, f"cut_off_distance inf visc {ETA} fluid_velocity grid {tmp_path}/mesh.grid {EXACT}").run()
-        assert largest_difference(sim.drag, model.forces(spheres, ETA, linear(spheres.x))) < 1e-8      # VTK has points in single precision
+        sim = simulation(spheres,
+                         f"cut_off_distance inf visc {ETA} fluid_velocity grid {tmp_path}/mesh.grid {EXACT}").run()
+        # VTK has points in single precision
+        assert largest_difference(sim.drag, model.forces(spheres, ETA, linear(spheres.x))) < 1e-8

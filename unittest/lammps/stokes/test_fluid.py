@@ -118,7 +118,8 @@ def test_local_viscosity_leaves_the_resistance_symmetric(simulation):
         spheres.v = field
         F.append(simulation(spheres, f"cut_off_distance inf visc v_eta {EXACT}",
                             before_pair="variable eta atom 1.5+0.3*x").run().drag)
-    assert (F[0] * v[1]).sum() == pytest.approx((F[1] * v[0]).sum(), abs=1e-9 * np.linalg.norm(F[0]) * np.linalg.norm(v[1]))
+    assert (F[0] * v[1]).sum() == pytest.approx((F[1] * v[0]).sum(),
+                                                abs=1e-9 * np.linalg.norm(F[0]) * np.linalg.norm(v[1]))
 
 
 def test_variables_are_evaluated_for_the_group_only(simulation):

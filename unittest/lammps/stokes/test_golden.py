@@ -75,7 +75,8 @@ def test_clumps_only_without_cut_off(simulation, name):
 @pytest.mark.parametrize("name", CASES)
 def test_clumps_only_with_cut_off_larger_than_the_clumps(simulation, name):
     spheres = spheres_of(name)
-    sim = simulation(spheres, f"clumps_only yes cut_off_distance {float(reach(spheres))!r} visc {eta_of(name)!r} {EXACT}",
+    sim = simulation(spheres,
+                     f"clumps_only yes cut_off_distance {float(reach(spheres))!r} visc {eta_of(name)!r} {EXACT}",
                      before_pair=si(name)).run()
     assert largest_difference(sim.drag, answer(name, "clump")) < TOLERANCE
 

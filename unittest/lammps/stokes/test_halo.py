@@ -25,7 +25,8 @@ def long_clumps(length):
 def run(tmp_path, spheres, words, ranks, steps=0, columns=FORCES, **options):
     options = {"boundary": "p p p", "box": [(-10.0, 10.0)] * 3, **options}
     lines = input_lines(spheres, words, tmp_path / "data", **options)
-    lmp(tmp_path, lines + dump_lines(tmp_path / "dump", every=max(steps, 1), columns=columns) + [f"run {steps}"], ranks=ranks)
+    lmp(tmp_path, lines + dump_lines(tmp_path / "dump", every=max(steps, 1), columns=columns) + [f"run {steps}"],
+        ranks=ranks)
     return read_dump(tmp_path / "dump")[-1][1]
 
 
@@ -36,7 +37,8 @@ def test_clumps_nearly_half_as_long_as_the_box_need_no_wider_ghosts(tmp_path, ra
     assert largest_difference(F, model.forces(spheres, ETA, sees=model.same_clump(spheres))) < 1e-10
 
 
-WAYS = {"apart": "clumps_only yes rigid_clumps yes shell 12 visc 1.3", "films": "cut_off_distance inf rotation yes rigid_clumps yes "
+WAYS = {"apart": "clumps_only yes rigid_clumps yes shell 12 visc 1.3",
+        "films": "cut_off_distance inf rotation yes rigid_clumps yes "
         "lubrication yes relative_tolerance 1e-12 far_field_tolerance 1e-4 visc 1.3",
         "list": "cut_off_distance 7 taper wendland rotation yes rigid_clumps yes relative_tolerance 1e-13 visc 1.3"}
 
@@ -56,24 +58,28 @@ def test_long_clumps_move_the_same_on_all_numbers_of_ranks(tmp_path, way):
 def test_contacts_beside_clumps_with_films_and_many_ghosts(tmp_path):
     """In a hybrid style LAMMPS makes its buffers for what a sub-style says in time; ours wants none."""
     rng = np.random.default_rng(8)
-    centres = np.array([(x, y, z) for x in (-7.6, -2.5, 2.5, 7.6) for y in (-7.5, -2.5, 2.5, 7.5) for z in (-7.5, -2.5, 2.5, 7.5)])
+    centres = np.array([(x, y, z) for x in (-7.6, -2.5, 2.5, 7.6) for y in (-7.5, -2.5, 2.5, 7.5)
+                        for z in (-7.5, -2.5, 2.5, 7.5)])
     axis = rng.normal(size=centres.shape)
     axis /= np.linalg.norm(axis, axis=1)[:, None]
     x = np.vstack([centres - axis, centres + axis])
     spheres = Spheres(x, 1.0, molecule=np.tile(1 + np.arange(64), 2))
-    style = ["pair_style hybrid/overlay gran/hooke/history 20.0 NULL 0 NULL 0.0 0 stokes_dynamics cut_off_distance inf visc 1.1 "
-             "rotation yes rigid_clumps yes lubrication yes relative_tolerance 1e-11 far_field_tolerance 1e-6",
+    style = ["pair_style hybrid/overlay gran/hooke/history 20.0 NULL 0 NULL 0.0 0 stokes_dynamics "
+             "cut_off_distance inf visc 1.1 rotation yes rigid_clumps yes lubrication yes relative_tolerance 1e-11 "
+             "far_field_tolerance 1e-6",
              "pair_coeff * * gran/hooke/history", "pair_coeff * * stokes_dynamics"]
-    options = dict(fix=False, dt=0.01, comm="comm_modify vel yes\nneighbor 6 bin\nneigh_modify exclude molecule/intra all",
+    options = dict(fix=False, dt=0.01,
+                   comm="comm_modify vel yes\nneighbor 6 bin\nneigh_modify exclude molecule/intra all",
                    columns=COLUMNS, steps=2,
-                   before_pair="variable fx atom sin(id)\nfix pull all addforce v_fx 0 -6\nfix move all stokes_dynamics/overdamped")
+                   before_pair="variable fx atom sin(id)\nfix pull all addforce v_fx 0 -6\n"
+                               "fix move all stokes_dynamics/overdamped")
     one, two = (run(tmp_path, spheres, style, ranks, **options) for ranks in (1, 2))
     text = open(tmp_path / "log.test").read()
     assert int(float(re.search(r"Nghost: +([0-9.]+)", text).group(1))) > 6 * 60
     assert np.abs((one - two)[:, 3:]).max() < 1e-9 * np.abs(one[:, 3:]).max()
 
 
-# --- boxes that shear with the fluid --------------------------------------------------------------------------------------------
+# --- boxes that shear with the fluid ----------------------------------------------------------------------------------
 
 SHEARED = dict(boundary="p p p", box=[(0.0, 30.0)] * 3, tilt=(0.0, 0.0, 0.0), fix=False)
 FLOW = "variable ux atom 0.2*z"
@@ -93,8 +99,9 @@ def test_a_clump_across_a_sheared_face_turns_as_in_the_middle(tmp_path, words, r
     for z in (15.0, 29.5):
         ends.append(run(tmp_path, pair_at(z, 2.0, 1), f"{words} rigid_clumps yes shell 12 " + TIGHT.replace(
             "far_field_tolerance 1e-7", "" if "only" in words else "far_field_tolerance 1e-7"), ranks, steps=20,
-            columns="omegax omegay omegaz f_move[4] f_move[5] f_move[6]", dt=0.01, comm="neigh_modify exclude molecule/intra all",
-            before_pair=f"{FLOW}\nfix move all stokes_dynamics/overdamped\nfix d all deform 1 xz erate 0.2 remap none flip yes",
+            columns="omegax omegay omegaz f_move[4] f_move[5] f_move[6]", dt=0.01,
+                        comm="neigh_modify exclude molecule/intra all", before_pair=f"{FLOW}\n"
+                        "fix move all stokes_dynamics/overdamped\nfix d all deform 1 xz erate 0.2 remap none flip yes",
             **SHEARED))
     assert abs(ends[0][0, 1]) > 0.05
     assert np.abs(ends[1] - ends[0]).max() < 1e-6
@@ -102,8 +109,9 @@ def test_a_clump_across_a_sheared_face_turns_as_in_the_middle(tmp_path, words, r
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_clump_of_given_motion_across_a_sheared_face_feels_what_it_feels_in_the_middle(tmp_path, ranks):
-    F = [run(tmp_path, pair_at(z, 2.0, 1), "clumps_only yes rigid_clumps yes shell 12 visc 1.3 fluid_velocity v_ux 0 0", ranks,
-             before_pair=FLOW, comm="comm_modify vel yes\nfix d all deform 1 xz erate 0.2 remap v flip yes", **{**SHEARED, "fix": True})
+    F = [run(tmp_path, pair_at(z, 2.0, 1), "clumps_only yes rigid_clumps yes shell 12 visc 1.3 fluid_velocity v_ux 0 0",
+             ranks, before_pair=FLOW, comm="comm_modify vel yes\nfix d all deform 1 xz erate 0.2 remap v flip yes",
+             **{**SHEARED, "fix": True})
          for z in (15.0, 29.5)]
     assert np.abs(F[0]).max() > 0.1
     assert np.abs(F[1] - F[0]).max() < 1e-9
@@ -111,16 +119,18 @@ def test_a_clump_of_given_motion_across_a_sheared_face_feels_what_it_feels_in_th
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_films_across_a_sheared_face_are_those_of_the_middle(tmp_path, ranks):
-    F = [run(tmp_path, pair_at(z, 2.02, 0), f"cut_off_distance inf rotation yes lubrication yes algorithm 2 {TIGHT}", ranks,
-             before_pair=FLOW, comm="comm_modify vel yes\nfix d all deform 1 xz erate 0.2 remap v flip yes", **{**SHEARED, "fix": True})
+    F = [run(tmp_path, pair_at(z, 2.02, 0), f"cut_off_distance inf rotation yes lubrication yes algorithm 2 {TIGHT}",
+             ranks, before_pair=FLOW, comm="comm_modify vel yes\nfix d all deform 1 xz erate 0.2 remap v flip yes",
+             **{**SHEARED, "fix": True})
          for z in (15.0, 29.5)]
     assert np.abs(F[0]).max() > 0.5
     assert np.abs(F[1] - F[0]).max() < 1e-6
 
 
-# --- what a run may get wrong ---------------------------------------------------------------------------------------------------
+# --- what a run may get wrong -----------------------------------------------------------------------------------------
 
-@pytest.mark.parametrize("words", ["clumps_only yes rigid_clumps yes visc 1.3", "cut_off_distance inf rotation yes rigid_clumps yes visc 1.3"])
+@pytest.mark.parametrize("words", ["clumps_only yes rigid_clumps yes visc 1.3",
+                                   "cut_off_distance inf rotation yes rigid_clumps yes visc 1.3"])
 def test_a_rigid_clump_whose_radii_change_is_not_rigid(tmp_path, words):
     motion = "fix move all stokes_dynamics/overdamped" if "inf" in words else ""
     lines = input_lines(chain(3, 2 * A, a=A), words, tmp_path / "data", fix=not motion, dt=1e-3,

@@ -12,7 +12,7 @@ from system import LammpsError, Spheres, chain, note
 from ways import A, ETA, STOKES, WAYS, Way
 
 
-# --- spheres in one another --------------------------------------------------------------------------------------------
+# --- spheres in one another -------------------------------------------------------------------------------------------
 
 @pytest.mark.hard_case("two equal spheres merge, R = 2a to 1e-14 a and 0")
 @all_ways
@@ -93,13 +93,14 @@ def test_substitution_at_one_point_is_refused(simulation, words, v):
             simulation(spheres, f"{words} visc {ETA} algorithm 1 strict").run()
 
 
-# --- radii of very different size ---------------------------------------------------------------------------------------
+# --- radii of very different size -------------------------------------------------------------------------------------
 
 @pytest.mark.hard_case("radii 1:100, touching")
 @all_ways
 def test_touching_spheres_of_radii_one_to_hundred(simulation, way):
     """The matrix scaled to unit diagonal is harmless: eigenvalues 0.9 to 1.1 without rotation."""
-    spheres = Spheres([(0, 0, 0), (0, 60.6 * A, 80.8 * A)], [A, 100 * A], [(0.3, -0.2, 0.4), (-0.1, 0.2, 0.5)], molecule=1)
+    spheres = Spheres([(0, 0, 0), (0, 60.6 * A, 80.8 * A)], [A, 100 * A], [(0.3, -0.2, 0.4), (-0.1, 0.2, 0.5)],
+                      molecule=1)
     sim = check(simulation, way, spheres, 1e-10)
     assert sim.iterations <= 8
 
@@ -119,8 +120,9 @@ def test_giant_sphere_with_tiny_ones(simulation, way):
 
 
 def random_clumps(count, ratio, seed=1):
-    """Clumps of 2 to 12 spheres, radii log-uniform in 1:ratio, each sphere crossing or within one before it; all in one box, so
-    that clumps overlap each other, too. One group for each size: molecule [m], x [m,n,3], a [m,n], v [m,n,3]."""
+    """Clumps of 2 to 12 spheres, radii log-uniform in 1:ratio, each sphere crossing or within one before it; all in one
+    box, so that clumps overlap each other, too. One group for each size: molecule [m], x [m,n,3], a [m,n], v
+    [m,n,3]."""
     rng = np.random.default_rng(seed)
     size, groups = rng.integers(2, 13, count), []
     for n in range(2, 13):
@@ -138,14 +140,16 @@ def random_clumps(count, ratio, seed=1):
 
 
 @pytest.mark.hard_case("10 000 random overlapping clumps, radii 1:100, in one run")
-@pytest.mark.parametrize("words,count,clump_error", [("precondition none", 10000, 1e-2), ("precondition clump", 10000, 1e-6),
-                                                     ("rotation yes", 3000, 1e-2),
-                                                     ("cut_off_distance 60 taper wendland", 10000, 1e-6)])
+@pytest.mark.parametrize("words,count,clump_error",
+                         [("precondition none", 10000, 1e-2), ("precondition clump", 10000, 1e-6),
+                          ("rotation yes", 3000, 1e-2),
+                          ("cut_off_distance 60 taper wendland", 10000, 1e-6)])
 def test_ten_thousand_random_clumps(simulation, words, count, clump_error):
     """The residual is over all of them. A clump alone may be worse: without blocks the tolerance is shared by all."""
     groups = random_clumps(count, 100.0)
     spheres = Spheres(*(np.concatenate(parts) for parts in zip(*(
-        (x.reshape(-1, 3), a.ravel(), v.reshape(-1, 3), np.repeat(molecule, a.shape[1])) for molecule, x, a, v in groups))))
+        (x.reshape(-1, 3), a.ravel(), v.reshape(-1, 3), np.repeat(molecule, a.shape[1])) for molecule, x, a,
+        v in groups))))
     way = Way("clumps_only yes " + words, rotation="rotation" in words)
     sim = simulation(spheres, way.style(spheres, "algorithm 2 relative_tolerance 1e-6 max_iter 3000")).run()
     assert sim.residual <= 1e-6 and sim.fix_vector()[6] == 0
@@ -190,7 +194,7 @@ def test_dense_clump_of_300_spheres(simulation, way, velocities):
     assert way.error(answer, way.forces(spheres), spheres) < 1e-3
 
 
-# --- many ---------------------------------------------------------------------------------------------------------------
+# --- many -------------------------------------------------------------------------------------------------------------
 
 @pytest.mark.hard_case("touching chain of 1000")
 @pytest.mark.parametrize("words", ["cut_off_distance inf precondition none", "cut_off_distance inf precondition sparse",
@@ -265,7 +269,8 @@ def test_one_sphere_among_100000(simulation, words):
 def test_tolerance_that_rounding_does_not_allow(simulation, tmp_path, way):
     """The residual that conjugate gradients carry along falls for ever; the one reported is that of the answer."""
     spheres = cloud()
-    sim = simulation(spheres, way.style(spheres, "algorithm 2 relative_tolerance 1e-18 max_iter 5000"), log=tmp_path / "log").run()
+    sim = simulation(spheres, way.style(spheres, "algorithm 2 relative_tolerance 1e-18 max_iter 5000"),
+                     log=tmp_path / "log").run()
     assert 1e-17 < sim.residual < 1e-14 and sim.iterations < 500 and sim.fix_vector()[6] == 1
     assert way.error(way.answer(sim), way.forces(spheres), spheres) < 1e-12
     sim.close()

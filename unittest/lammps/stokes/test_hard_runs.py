@@ -8,7 +8,7 @@ from system import LammpsError, Spheres, chain, dump_lines, input_lines, largest
 from ways import A, COLUMNS, ETA, EXACT, STOKES, WAYS, Way
 
 
-# --- spheres that move -------------------------------------------------------------------------------------------------
+# --- spheres that move ------------------------------------------------------------------------------------------------
 
 def frames_of(sim, steps):
     """[step, sphere, COLUMNS] of a run; nothing but what the commands before have set in motion moves."""
@@ -20,7 +20,8 @@ def frames_of(sim, steps):
 
 def passing_by(simulation, way, x, dt):
     """A sphere of radius A at (x, 0.1, 0) that goes along -x through a larger one at the origin, past a third."""
-    spheres = Spheres([(0, 0, 0), (x, 0.1, 0), (1.0, 2.0, -2.0)], [1.9, A, 1.1], [U, (-1, 0, 0), (0.1, 0.3, -0.2)], molecule=1)
+    spheres = Spheres([(0, 0, 0), (x, 0.1, 0), (1.0, 2.0, -2.0)], [1.9, A, 1.1], [U, (-1, 0, 0), (0.1, 0.3, -0.2)],
+                      molecule=1)
     sim = simulation(spheres, way.style(spheres), dt=dt, box=[(-20.0, 20.0)] * 3)
     return spheres, sim.commands("group moving id 2\nfix move moving move linear -1 0 0")
 
@@ -91,10 +92,11 @@ def test_clump_that_loses_its_spheres(simulation, way):
         assert largest_difference(sim.drag, lone) < 1e-9
 
 
-# --- places and units ---------------------------------------------------------------------------------------------------
+# --- places and units -------------------------------------------------------------------------------------------------
 
 @pytest.mark.hard_case("radius 1e-9 m in SI units, radius 1e6, 1e8 radii from the origin")
-@pytest.mark.parametrize("scale,eta,units,offset", [(1e-9, 1e-3, "si", 0.0), (1e6, 1.3, "lj", 0.0), (1.0, 1.3, "lj", 1e8)],
+@pytest.mark.parametrize("scale,eta,units,offset", [(1e-9, 1e-3, "si", 0.0), (1e6, 1.3, "lj", 0.0),
+                                                    (1.0, 1.3, "lj", 1e8)],
                          ids=["nanometres", "1e6", "far away"])
 @all_ways
 def test_scales_and_places(simulation, way, scale, eta, units, offset):
@@ -102,7 +104,8 @@ def test_scales_and_places(simulation, way, scale, eta, units, offset):
     spheres.x = (spheres.x + offset) * scale
     spheres.a *= scale
     spheres.v *= scale
-    sim = simulation(spheres, way.style(spheres, EXACT, eta), units=units, before_pair=f"neighbor {0.1 * scale} bin").run()
+    sim = simulation(spheres, way.style(spheres, EXACT, eta), units=units,
+                     before_pair=f"neighbor {0.1 * scale} bin").run()
     assert way.error(way.answer(sim), way.forces(spheres, eta=eta), spheres) < 1e-9
     assert sim.residual <= 1e-12 and sim.fix_vector()[6] == 0
 
@@ -138,7 +141,7 @@ def test_flat_rigid_clumps(simulation, scene):
     assert WAYS["none"].error(sim.drag, model.forces(spheres, ETA), spheres) < 1e-9
 
 
-# --- what the model does not have, and what is refused --------------------------------------------------------------------
+# --- what the model does not have, and what is refused ----------------------------------------------------------------
 
 @pytest.mark.hard_case("spin of a straight chain")
 def test_spin_of_a_straight_chain_about_its_axis(simulation):
@@ -168,7 +171,8 @@ def test_oseen_where_its_matrix_is_singular(simulation, words, v):
         sim = simulation(Spheres([(0, 0, 0), (0, 0, s * A)], A, v, molecule=1), f"{words} visc {ETA} tensor oseen " +
                          ("" if "algorithm" in words else EXACT))
         if refused:
-            with pytest.raises(LammpsError, match="not positive definite with tensor oseen.*must be below 1; use tensor rpy"):
+            with pytest.raises(LammpsError,
+                               match="not positive definite with tensor oseen.*must be below 1; use tensor rpy"):
                 sim.run()
         elif "algorithm" not in words:
             w = 1.5 / s if len(np.shape(v)) == 1 else -1.5 / s
@@ -179,7 +183,8 @@ def test_oseen_where_its_matrix_is_singular(simulation, words, v):
 @pytest.mark.parametrize("R,too_large", [(4.5, 0.3987), (6.5, 0.2298), (10.5, 0.0979), (18.5, 0.0)])
 def test_cut_off_within_a_clump_is_warned_of(simulation, tmp_path, R, too_large):
     """Chain of ten along its axis, drag too large by 40, 23 and 10 %; at 18.5 a all see each other."""
-    sim = simulation(chain(10, 2 * A, a=A, v=(0, 0, U[2])), f"clumps_only yes cut_off_distance {R * A} visc {ETA} {EXACT}",
+    sim = simulation(chain(10, 2 * A, a=A, v=(0, 0, U[2])),
+                     f"clumps_only yes cut_off_distance {R * A} visc {ETA} {EXACT}",
                      log=tmp_path / "log").run(2)
     assert -sim.drag[:, 2].sum() / (STOKES * U[2]) / 2.8644863357 - 1 == pytest.approx(too_large, abs=1e-4)
     sim.close()
@@ -249,7 +254,7 @@ def test_angular_velocity_that_is_nan_stops_all_ranks(tmp_path, ranks):
     assert f"{PAIR}: step 0, atom 7: its velocity is not a finite number" in ended.log
 
 
-# --- ranks --------------------------------------------------------------------------------------------------------------
+# --- ranks ------------------------------------------------------------------------------------------------------------
 
 def hard_scene():
     """Radii 1:100 at random, which overlap and hide one another; two spheres at one point, two that touch."""

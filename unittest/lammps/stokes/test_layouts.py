@@ -10,7 +10,8 @@ from test_golden import CASES, EXACT, answer, eta_of, reach, si, spheres_of
 
 DIFFERENCE = 1e-10      # of the largest force, to one rank, newton on, brick, no exclusions
 MODES = ("all", "list", "clump")
-EXCLUSIONS = {"none": "", "exclude": "neigh_modify exclude molecule/intra all", "special": "special_bonds lj 0 0 0 coul 0 0 0"}
+EXCLUSIONS = {"none": "", "exclude": "neigh_modify exclude molecule/intra all",
+              "special": "special_bonds lj 0 0 0 coul 0 0 0"}
 LAYOUTS = list(itertools.product(("on", "off"), ("brick", "tiled"), EXCLUSIONS))
 
 
@@ -24,13 +25,16 @@ def block(folder, name, mode, newton, comm, exclusion):
     """Input for one case in one layout, from clear to clear."""
     spheres = spheres_of(name).chain_bonds()
     key = "-".join((name, mode, newton, comm, exclusion))
-    parts = f"comm_modify cutoff {float(reach(spheres))!r}\n" + ("comm_style tiled\nbalance 1.0 rcb" if comm == "tiled" else "")
+    parts = f"comm_modify cutoff {float(reach(spheres))!r}\n" + ("comm_style tiled\nbalance 1.0 rcb" if comm == "tiled"
+                                                                 else "")
     lines = input_lines(spheres, style_of(name, mode), folder / (key + ".data"), newton=newton, comm=parts,
                         before_pair=si(name) + "\n" + EXCLUSIONS[exclusion])
-    return lines + dump_lines(folder / (key + ".dump"), columns="f_drag[1] f_drag[2] f_drag[3]") + ["run 0 post no", "clear"]
+    return lines + dump_lines(folder / (key + ".dump"),
+                              columns="f_drag[1] f_drag[2] f_drag[3]") + ["run 0 post no", "clear"]
 
 
-@pytest.fixture(scope="module", params=[1, *(pytest.param(n, marks=pytest.mark.ranks(n)) for n in (2, 4))], ids=lambda n: f"{n}ranks")
+@pytest.fixture(scope="module", params=[1, *(pytest.param(n, marks=pytest.mark.ranks(n)) for n in (2, 4))],
+                ids=lambda n: f"{n}ranks")
 def forces(request, tmp_path_factory):
     """Forces of every case, mode and layout on 1, 2 or 4 ranks."""
     folder = tmp_path_factory.mktemp("layouts")

@@ -13,7 +13,8 @@ MODES = {"all": "cut_off_distance inf", "list": "cut_off_distance 15"}
 
 def five():
     x = [(0, 0, 0), (1.5, 0.2, 0), (0, 1.7, 0.4), (2.6, 1.9, -0.7), (-1.2, 0.3, 1.8)]
-    return Spheres(x, (A, 0.8 * A, A, 1.3 * A, 0.5 * A), np.random.default_rng(4).normal(size=(5, 3)), molecule=[1, 1, 1, 2, 2])
+    return Spheres(x, (A, 0.8 * A, A, 1.3 * A, 0.5 * A), np.random.default_rng(4).normal(size=(5, 3)),
+                   molecule=[1, 1, 1, 2, 2])
 
 
 def expected_now(sim, eta=ETA):
@@ -31,7 +32,8 @@ def test_run_0_twice_is_the_same(simulation, mode, n):
 
 
 def test_run_0_after_a_run_changes_nothing(simulation):
-    sim = simulation(five(), f"cut_off_distance inf {EXACT}", box=BOX, dt=0.01).commands("fix move all nve/sphere").run(20)
+    sim = simulation(five(), f"cut_off_distance inf {EXACT}", box=BOX,
+                     dt=0.01).commands("fix move all nve/sphere").run(20)
     x, v, F = sim.x, sim.v, sim.drag
     sim.run()
     assert np.array_equal(sim.x, x) and np.array_equal(sim.v, v) and np.array_equal(sim.drag, F)
@@ -78,7 +80,8 @@ def test_molecule_set_between_runs_is_in_the_next_force(simulation):
 
 def test_group_changed_between_runs_is_in_the_next_force(simulation):
     """As many spheres as before, but others."""
-    sim = simulation(five(), f"cut_off_distance inf {EXACT} group some", box=BOX, before_pair="group some id 1 2 3").run()
+    sim = simulation(five(), f"cut_off_distance inf {EXACT} group some", box=BOX,
+                     before_pair="group some id 1 2 3").run()
     sim.commands("group some clear\ngroup some id 1 2 4").run()
     part = [0, 1, 3]
     spheres = five()
@@ -101,7 +104,8 @@ def test_box_that_becomes_larger_between_runs_is_in_the_next_force(simulation):
 @pytest.mark.parametrize("mode", MODES)
 def test_new_settings_between_runs_are_in_the_next_force(simulation, mode):
     sim = simulation(five(), f"clumps_only yes {EXACT} update_every 10", box=BOX, comm="comm_modify cutoff 9").run(3)
-    sim.commands([f"pair_style stokes_dynamics {MODES[mode]} visc 2.6 algorithm 2 relative_tolerance 1e-12 update_every 10",
+    sim.commands([f"pair_style stokes_dynamics {MODES[mode]} visc 2.6 algorithm 2 relative_tolerance 1e-12 "
+                  "update_every 10",
                   "pair_coeff * *"]).run()
     assert largest_difference(sim.drag, expected_now(sim, 2.6)) < 1e-10
 
@@ -153,21 +157,25 @@ def test_spheres_that_evaporate_within_a_run_are_gone_at_once(tmp_path, mode, n,
 def test_spheres_that_are_deposited_within_a_run_take_part_at_once(tmp_path, mode, ranks):
     """Nothing moves but what is deposited."""
     lines = input_lines(five(), f"{MODES[mode]} {EXACT} update_every 10", tmp_path / "data", box=BOX)
-    lines += ["region top block -6 6 -6 6 4 8", "fix rain all deposit 4 1 3 4711 region top near 1.0 vz -0.5 -0.5 id next",
+    lines += ["region top block -6 6 -6 6 4 8",
+              "fix rain all deposit 4 1 3 4711 region top near 1.0 vz -0.5 -0.5 id next",
               "neigh_modify every 1 delay 0"]
-    lines += dump_lines(tmp_path / "dump", columns="id x y z vx vy vz radius f_drag[1] f_drag[2] f_drag[3]") + ["run 15"]
+    lines += dump_lines(tmp_path / "dump", columns="id x y z vx vy vz radius f_drag[1] f_drag[2] f_drag[3]") + [
+        "run 15"]
     lmp(tmp_path, lines, ranks=ranks)
     sizes = set()
     for step, ids, rows in frames(tmp_path / "dump"):
         sizes.add(len(ids))
-        assert largest_difference(rows[:, 7:10], model.forces(Spheres(rows[:, 0:3], rows[:, 6], rows[:, 3:6]), ETA)) < 1e-9, step
+        assert largest_difference(rows[:, 7:10], model.forces(Spheres(rows[:, 0:3], rows[:, 6], rows[:, 3:6]),
+                                                              ETA)) < 1e-9, step
     assert sizes >= {5, 7, 9}
 
 
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("n", [1, 4])
 def test_rerun_of_a_dump_gives_the_forces_of_its_frames(simulation, mode, n):
-    sim = simulation(five(), f"{MODES[mode]} {EXACT} update_every {n}", box=BOX, dt=0.02).commands("fix move all nve/sphere")
+    sim = simulation(five(), f"{MODES[mode]} {EXACT} update_every {n}", box=BOX,
+                     dt=0.02).commands("fix move all nve/sphere")
     sim.commands(dump_lines(sim.folder / "dump", every=3)).run(12).commands("undump out\nunfix move")
     sim.commands(dump_lines(sim.folder / "again", every=3))
     sim.command(f"rerun {sim.folder}/dump dump x y z vx vy vz")
@@ -191,7 +199,8 @@ def test_rerun_in_a_new_instance_gives_the_forces_of_its_frames(simulation):
     sim.commands(dump_lines(sim.folder / "again", every=3)).command(f"rerun {sim.folder}/dump dump x y z vx vy vz")
     sim.close()
     for (_, before), (step, again) in zip(read_dump(sim.folder / "dump"), read_dump(sim.folder / "again")):
-        assert largest_difference(again[:, 6:9], model.forces(Spheres(before[:, 0:3], radii, before[:, 3:6]), ETA)) < 1e-9, step
+        assert largest_difference(again[:, 6:9], model.forces(Spheres(before[:, 0:3], radii, before[:, 3:6]),
+                                                              ETA)) < 1e-9, step
 
 
 @pytest.mark.loader
@@ -237,7 +246,8 @@ def test_minimisation_is_refused(simulation, min_style):
 
 
 def test_respa_is_refused(simulation):
-    sim = simulation(five(), f"cut_off_distance inf {EXACT}", box=BOX).commands("fix move all nve/sphere\nrun_style respa 2 2")
+    sim = simulation(five(), f"cut_off_distance inf {EXACT}",
+                     box=BOX).commands("fix move all nve/sphere\nrun_style respa 2 2")
     with pytest.raises(LammpsError, match="does not support run_style respa"):
         sim.run()
 

@@ -10,7 +10,8 @@ import long_run  # noqa: E402
 from system import note  # noqa: E402
 
 
-@pytest.mark.hard_case("long run: no drift of memory, residual, momentum, forces (a million steps: unittest/bench/long_run.py)")
+@pytest.mark.hard_case("long run: no drift of memory, residual, momentum, forces (a million steps: "
+                       "unittest/bench/long_run.py)")
 def test_nothing_creeps_in(tmp_path):
     sim = long_run.start(tmp_path)
     try:

@@ -13,7 +13,8 @@ ALL = "cut_off_distance inf visc 1.3 rotation yes lubrication yes"
 
 
 def squeezed(simulation, xi, words=""):
-    """Speed at which two unit spheres approach each other under equal and opposite forces 6 pi eta, and the fix's vector"""
+    """Speed at which two unit spheres approach each other under equal and opposite forces 6 pi eta, and the fix's
+    vector"""
     spheres = Spheres([(0, 0, 0), (0.6 * (2 + xi), 0, 0.8 * (2 + xi))])
     sim = simulation(spheres, f"{ALL} relative_tolerance 1e-9 {words}", fix=False)
     push = 1.3 * P6 * np.array((0.6, 0, 0.8))
@@ -25,7 +26,8 @@ def squeezed(simulation, xi, words=""):
 
 @pytest.mark.parametrize("xi", [1e-3, 1e-2, 0.1])
 def test_approach_of_two_spheres_is_that_of_the_film_between_them(simulation, xi):
-    """Jeffrey & Onishi 1984: XA11 - XA12 = 1/(2 xi) + 9/20 ln(1/xi) + 1.34558 + 3/56 xi ln(1/xi) + O(xi), times 6 pi eta a."""
+    """Jeffrey & Onishi 1984: XA11 - XA12 = 1/(2 xi) + 9/20 ln(1/xi) + 1.34558 + 3/56 xi ln(1/xi) + O(xi), times 6 pi
+    eta a."""
     resistance = 1 / (2 * xi) + 0.45 * np.log(1 / xi) + 1.34558 + 3 / 56 * xi * np.log(1 / xi)
     assert squeezed(simulation, xi) == pytest.approx(2 / resistance, rel=1e-4 + 0.2 * xi * xi + 0.3 * xi / resistance)
 
@@ -42,16 +44,18 @@ def test_film_ends_at_the_range(simulation):
     assert without == pytest.approx(2 * (1 - 1.5 / 2.51 + 1 / 2.51**3), rel=1e-8)
 
 
-# --- images, ranks, forces for given velocities ------------------------------------------------------------------------------
+# --- images, ranks, forces for given velocities -----------------------------------------------------------------------
 
 L = 11.0
 CLOSE = "far_field_tolerance 1e-12 relative_tolerance 1e-11 max_iter 500"
-PERIODIC = dict(fix=False, boundary="p p p", comm="comm_modify cutoff 6 vel yes\nneigh_modify exclude molecule/intra all")
+PERIODIC = dict(fix=False, boundary="p p p",
+                comm="comm_modify cutoff 6 vel yes\nneigh_modify exclude molecule/intra all")
 LOADS = ["variable fx atom 3*sin(id)", "variable fz atom -5-0.1*id", "fix pull all addforce v_fx 0.3 v_fz", FIX]
 
 
 def dense(n=40, doublets=6, seed=4):
-    """Free spheres and doublets at random in the periodic cube, at volume fraction 0.13, pushed apart to gaps of 1e-4 and more"""
+    """Free spheres and doublets at random in the periodic cube, at volume fraction 0.13, pushed apart to gaps of 1e-4
+    and more"""
     rng = np.random.default_rng(seed)
     molecule = np.append(np.repeat(np.arange(1, doublets + 1), 2), np.zeros(n - 2 * doublets, int))
     x = rng.uniform(0, L, (n, 3))
@@ -91,7 +95,8 @@ def test_periodic_border_is_none(simulation):
 def test_periodic_box_on_any_ranks(tmp_path, words):
     frames = []
     for ranks, newton in allowed((1, "on"), (2, "on"), (4, "off")):
-        lines = input_lines(dense(), f"{ALL} {CLOSE} {words}", tmp_path / "data", box=[(0.0, L)] * 3, dt=1e-3, newton=newton, **PERIODIC)
+        lines = input_lines(dense(), f"{ALL} {CLOSE} {words}", tmp_path / "data", box=[(0.0, L)] * 3, dt=1e-3,
+                            newton=newton, **PERIODIC)
         columns = "x y z vx vy vz omegax omegay omegaz f_move[4] f_move[5] f_move[6]"
         lmp(tmp_path, lines + LOADS + dump_lines("out.dump", every=5, columns=columns, name="out") + ["run 5"], ranks)
         frames.append(read_dump(tmp_path / "out.dump")[-1][1])
@@ -119,19 +124,22 @@ def test_periodic_run_in_pieces_is_the_run_in_one(tmp_path, words, ranks):
     assert (np.abs(d).max(axis=0) < 1e-10 * np.maximum(np.abs(whole).max(axis=0), 1)).all()
 
 
-@pytest.mark.parametrize("boundary, words", [("f f f", "fluid_velocity v_u 0.2 0"), ("p p p", "fluid_velocity 0.1 0.2 0"),
+@pytest.mark.parametrize("boundary, words", [("f f f", "fluid_velocity v_u 0.2 0"),
+                                             ("p p p", "fluid_velocity 0.1 0.2 0"),
                                              ("f f f", "fluid_velocity v_u 0.2 0 rigid_clumps yes shell 12"),
                                              ("p p p", "rigid_clumps yes")])
 def test_forces_for_given_velocities_are_the_inverse(simulation, boundary, words):
     """What moves spheres and clumps so without inertia is what the pair style finds for that motion."""
     spheres = dense()
-    words = f"{ALL} {words} relative_tolerance 1e-11 max_iter 500" + (" far_field_tolerance 1e-12" if boundary[0] == "p" else "")
-    sim = simulation(spheres, words, box=[(0.0, L) if boundary[0] == "p" else (-20.0, 30.0)] * 3, before_pair="variable u atom 0.3*z+0.1*x",
-                     **dict(PERIODIC, boundary=boundary))
+    words = f"{ALL} {words} relative_tolerance 1e-11 max_iter 500" + (" far_field_tolerance 1e-12" if boundary[0] == "p"
+                                                                      else "")
+    sim = simulation(spheres, words, box=[(0.0, L) if boundary[0] == "p" else (-20.0, 30.0)] * 3,
+                     before_pair="variable u atom 0.3*z+0.1*x", **dict(PERIODIC, boundary=boundary))
     sim.commands(LOADS).run(0)
     load, before = sim.f, sim.fix_rows("move")[:, 3:9]
     power = sim.fix_scalar("move")
-    sim.commands(f"unfix move\nfix drag all stokes_dynamics\npair_style stokes_dynamics {words} algorithm 2\npair_coeff * *").run(0)
+    sim.commands(f"unfix move\nfix drag all stokes_dynamics\npair_style stokes_dynamics {words} algorithm 2\n"
+                 "pair_coeff * *").run(0)
     rows = sim.fix_rows()
     forces = np.hstack([rows[:, :3], rows[:, 6:9]])
     assert np.abs(forces - before).max() < 1e-6 * np.abs(load).max()
@@ -168,17 +176,21 @@ def test_a_doublet_along_an_axis_is_solved_to_rounding(simulation, axis):
 
 def test_radii_that_are_too_different_are_named(simulation):
     spheres = Spheres([(0, 0, 0), (90, 0, 0)], [0.5, 80.0])
-    with pytest.raises(LammpsError, match="keyword lubrication: radii from 0.5 to 80: lubrication is for ratios of radii up to 100"):
+    with pytest.raises(LammpsError,
+                       match="keyword lubrication: radii from 0.5 to 80: lubrication is for ratios of radii up to 100"):
         simulation(spheres, ALL, fix=False).commands(LOADS).run(0)
 
 
 def test_contact_comes_to_rest_and_opens(simulation):
-    """Two spheres pressed onto each other by 1 with a spring of 50, lubricated: they rest 1/50 into each other; pulled apart, they open
-    slowly, with forces that balance all the time."""
-    style = [f"pair_style hybrid/overlay gran/hooke/history 50 NULL 0 NULL 0 0 stokes_dynamics {ALL}", "pair_coeff * * gran/hooke/history",
+    """Two spheres pressed onto each other by 1 with a spring of 50, lubricated: they rest 1/50 into each other; pulled
+    apart, they open slowly, with forces that balance all the time."""
+    style = [f"pair_style hybrid/overlay gran/hooke/history 50 NULL 0 NULL 0 0 stokes_dynamics {ALL}",
+             "pair_coeff * * gran/hooke/history",
              "pair_coeff * * stokes_dynamics"]
-    sim = simulation(Spheres([(0, 0, 0), (2.05, 0, 0)]), style, fix=False, dt=0.05, comm="comm_modify vel yes", box=[(-60.0, 60.0)] * 3)
-    sim.commands("group left id 1\ngroup right id 2\nfix push left addforce 1 0 0\nfix back right addforce -1 0 0").commands(FIX)
+    sim = simulation(Spheres([(0, 0, 0), (2.05, 0, 0)]), style, fix=False, dt=0.05, comm="comm_modify vel yes",
+                     box=[(-60.0, 60.0)] * 3)
+    sim.commands(
+        "group left id 1\ngroup right id 2\nfix push left addforce 1 0 0\nfix back right addforce -1 0 0").commands(FIX)
     sim.run(20000)
     assert sim.x[1, 0] - sim.x[0, 0] == pytest.approx(2 - 1 / 50, rel=1e-5)
     sim.commands("unfix push\nunfix back\nfix push left addforce -1 0 0\nfix back right addforce 1 0 0")
@@ -187,18 +199,19 @@ def test_contact_comes_to_rest_and_opens(simulation):
         sim.run(200)
         gaps.append(sim.x[1, 0] - sim.x[0, 0] - 2)
         speeds.append(sim.v[1, 0] - sim.v[0, 0])
-    assert (np.diff(gaps) > 0).all() and (np.diff(speeds)[np.array(gaps[1:]) > 1e-3] > 0).all() and gaps[-1] > 1e-3 > 0 > gaps[0]
+    assert (np.diff(gaps) > 0).all() and (np.diff(speeds)[np.array(gaps[1:]) > 1e-3] >
+                                          0).all() and gaps[-1] > 1e-3 > 0 > gaps[0]
 
 
 @pytest.mark.parametrize("part, stable", [(0.9, True), (1.1, False)])
 def test_films_limit_explicit_steps_as_is_told(simulation, tmp_path, part, stable):
-    """Two free spheres with inertia that approach each other: below the limit of the log they slow down, above it they shake, with a
-    warning."""
+    """Two free spheres with inertia that approach each other: below the limit of the log they slow down, above it they
+    shake, with a warning."""
     xi, mass = 0.01, 4 / 3 * np.pi * 1.7
     limit = 2 / (2 * 1.3 * P6 * (1 / (4 * xi) - 0.75 + 0.225 * np.log(1 / xi) + 0.995 - 0.35) / mass)
     log = tmp_path / "log"
-    sim = simulation(Spheres([(0, 0, 0), (2 + xi, 0, 0)], 1.0, [(1e-9, 0, 0), (-1e-9, 0, 0)]), f"{ALL} add_force yes algorithm 2", fix=False,
-                     dt=part * limit, log=log)
+    sim = simulation(Spheres([(0, 0, 0), (2 + xi, 0, 0)], 1.0, [(1e-9, 0, 0), (-1e-9, 0, 0)]),
+                     f"{ALL} add_force yes algorithm 2", fix=False, dt=part * limit, log=log)
     sim.commands("fix move all nve/sphere").run(60)
     text = open(log).read()
     told = float(re.search(r"explicit time steps of free spheres are stable up to ([^ ;]+)", text).group(1))
@@ -209,13 +222,15 @@ def test_films_limit_explicit_steps_as_is_told(simulation, tmp_path, part, stabl
 
 @pytest.mark.parametrize("e", [0.01, -0.01, 0.03])
 def test_films_in_shear_dissipate(simulation, e):
-    """A film resists what a strain does to its pair, so that power is lost also where no sphere slips, and where spheres move a little
-    with the force on them: never less than nothing, here a parabola in the slip."""
+    """A film resists what a strain does to its pair, so that power is lost also where no sphere slips, and where
+    spheres move a little with the force on them: never less than nothing, here a parabola in the slip."""
     lost = []
     for k in (0.0, e, 2 * e):
-        sim = simulation(Spheres([(0, 0, 0), (1.21166208, 0, 1.61554944)]), "cut_off_distance inf visc 0.05305 fluid_velocity v_ux 0 0 rotation yes "
-                         "lubrication yes algorithm 2 relative_tolerance 1e-10 add_force yes", box=[(-20.0, 20.0)] * 3, comm="comm_modify cutoff 12 vel yes",
-                         before_pair=f"variable ux atom 0.2*z\nvariable vx atom 0.2*z+{k}*0.6*(3-2*id)\nvariable vz atom {k}*0.8*(3-2*id)\n"
+        sim = simulation(Spheres([(0, 0, 0), (1.21166208, 0, 1.61554944)]),
+                         "cut_off_distance inf visc 0.05305 fluid_velocity v_ux 0 0 rotation yes "
+                         "lubrication yes algorithm 2 relative_tolerance 1e-10 add_force yes", box=[(-20.0, 20.0)] * 3,
+                         comm="comm_modify cutoff 12 vel yes", before_pair="variable ux atom 0.2*z\n"
+                         f"variable vx atom 0.2*z+{k}*0.6*(3-2*id)\nvariable vz atom {k}*0.8*(3-2*id)\n"
                          "velocity all set v_vx 0 v_vz\nset group all omega 0 0.1 0")
         sim.commands("compute p all pair stokes_dynamics\nthermo_style custom step f_drag c_p[4]").run(0)
         lost.append(sim.fix_scalar())
@@ -228,10 +243,13 @@ def test_what_is_lost_in_shear_is_the_same_with_and_without_inertia(simulation):
     """Velocities from forces, and forces from these velocities: one power."""
     rng = np.random.default_rng(6)
     x = np.array([(0, 0, 0), (2.03, 0, 0.1), (0.9, 1.85, 0.2), (4.0, 4.0, 4.0), (3.0, 0.4, 2.1)])
-    words = "cut_off_distance inf visc 1.3 fluid_velocity v_ux v_uy 0 rotation yes lubrication yes relative_tolerance 1e-11"
-    options = dict(fix=False, box=[(-20.0, 20.0)] * 3, dt=1e-3, before_pair="variable ux atom 0.7*z\nvariable uy atom 0.3*y-0.2*x")
+    words = ("cut_off_distance inf visc 1.3 fluid_velocity v_ux v_uy 0 rotation yes lubrication yes "
+             "relative_tolerance 1e-11")
+    options = dict(fix=False, box=[(-20.0, 20.0)] * 3, dt=1e-3,
+                   before_pair="variable ux atom 0.7*z\nvariable uy atom 0.3*y-0.2*x")
     sim = simulation(Spheres(x), words, **options)
-    sim.commands("variable f atom 2*sin(9*id)\nfix pull all addforce v_f 0 v_f\nfix move all stokes_dynamics/overdamped").run(0)
+    sim.commands("variable f atom 2*sin(9*id)\nfix pull all addforce v_f 0 v_f\n"
+                 "fix move all stokes_dynamics/overdamped").run(0)
     power, v, w = sim.fix_scalar("move"), sim.v, sim.atom("omega")
     sim = simulation(Spheres(x, v=v), words + " algorithm 2 add_force yes", **{**options, "fix": True})
     for k in range(len(x)):
@@ -245,7 +263,8 @@ def test_what_is_lost_in_shear_is_the_same_with_and_without_inertia(simulation):
 @pytest.mark.parametrize("n, points, warned", [(6, 1, True), (6, 12, False), (5, 1, False)])
 def test_films_of_single_points_in_a_large_cloud_are_warned_of(tmp_path, n, points, warned):
     spheres = Spheres(3.0 * np.array([(i, j, k) for i in range(n) for j in range(n) for k in range(n)]))
-    lines = input_lines(spheres, f"cut_off_distance inf visc 1.3 rotation yes lubrication yes multiblob {points} relative_tolerance 0.1",
+    lines = input_lines(spheres, f"cut_off_distance inf visc 1.3 rotation yes lubrication yes multiblob {points} "
+                                 "relative_tolerance 0.1",
                         tmp_path / "data", fix=False)
     log = " ".join(lmp(tmp_path, lines + [FIX, "run 0"]).log.split())
     assert (f"with one point per sphere it slows down a cloud of {n ** 3} close spheres" in log) == warned

@@ -14,13 +14,15 @@ ACROSS = {1: 1.0, 2: 1.3913043478, 3: 1.7788461538, 10: 3.9660679076}
 
 
 def three_free():
-    return Spheres([(0, 0, 0), (1.9, 0.3, 0), (0.2, 1.9, 0.8)], A, [(0.3, 0, 0.1), (0, -0.2, 0.4), (0.1, 0.1, -0.5)], molecule=1)
+    return Spheres([(0, 0, 0), (1.9, 0.3, 0), (0.2, 1.9, 0.8)], A, [(0.3, 0, 0.1), (0, -0.2, 0.4), (0.1, 0.1, -0.5)],
+                   molecule=1)
 
 
 def test_force_inside_the_pair_style_and_by_the_fix_give_the_same_trajectory(simulation):
     ends = []
     for add_force in ("yes", "no"):
-        sim = simulation(three_free(), f"cut_off_distance inf {EXACT} add_force {add_force}", dt=0.01, box=[(-20.0, 20.0)] * 3)
+        sim = simulation(three_free(), f"cut_off_distance inf {EXACT} add_force {add_force}", dt=0.01,
+                         box=[(-20.0, 20.0)] * 3)
         sim.commands("fix move all nve/sphere\nfix pull all gravity 2.0 vector 0 0 -1").run(200)
         ends.append(np.hstack([sim.x, sim.v]))
     assert np.abs(ends[1] - ends[0]).max() < 1e-13
@@ -28,10 +30,11 @@ def test_force_inside_the_pair_style_and_by_the_fix_give_the_same_trajectory(sim
 
 def test_lone_sphere_slows_down_as_stokes_says(simulation):
     tau, dt = MASS / STOKES, 1e-3
-    sim = simulation(Spheres([(0, 0, 0)], A, (0, 0, 0.5)), f"cut_off_distance inf {EXACT} add_force yes", dt=dt, fix=False,
-                     box=[(-9.0, 9.0)] * 3)
+    sim = simulation(Spheres([(0, 0, 0)], A, (0, 0, 0.5)), f"cut_off_distance inf {EXACT} add_force yes", dt=dt,
+                     fix=False, box=[(-9.0, 9.0)] * 3)
     sim.commands("fix move all nve/sphere").run(100)
-    # LAMMPS's velocity Verlet with a force of the half-step velocity: v/2 dt and 1/(1 + ...) differ from exp in second order
+    # LAMMPS's velocity Verlet with a force of the half-step velocity: v/2 dt and 1/(1 + ...) differ from exp in second
+    # order
     assert sim.v[0, 2] == pytest.approx(0.5 * np.exp(-100 * dt / tau), rel=2 * dt / tau)
 
 
@@ -74,8 +77,8 @@ def test_two_rigid_clumps_with_clumps_only_fall_as_if_alone(simulation):
 
 def test_update_every_does_not_change_the_terminal_velocity(simulation):
     g = 2.0
-    sim = terminal_velocity(simulation, chain(3, 2 * A, a=A), "rigid/small molecule", g, f"clumps_only yes update_every 10",
-                            steps=4000, dt=0.005)
+    sim = terminal_velocity(simulation, chain(3, 2 * A, a=A), "rigid/small molecule", g,
+                            f"clumps_only yes update_every 10", steps=4000, dt=0.005)
     assert sim.v[:, 2] == pytest.approx(-3 * MASS * g / (STOKES * ALONG[3]), rel=1e-8)
 
 
@@ -115,7 +118,8 @@ def test_under_hybrid_overlay_contact_and_drag_add_up(simulation, order, add_for
 def test_under_hybrid_overlay_contacts_of_rigid_clumps_do_not_hide_their_drag(simulation):
     """The usual recipe: no contacts within a clump, hence no pairs of it in LAMMPS's lists."""
     g = 2.0
-    lines = [f"pair_style hybrid/overlay {GRAN} stokes_dynamics clumps_only yes {EXACT}", "pair_coeff * * gran/hooke/history",
+    lines = [f"pair_style hybrid/overlay {GRAN} stokes_dynamics clumps_only yes {EXACT}",
+             "pair_coeff * * gran/hooke/history",
              "pair_coeff * * stokes_dynamics"]
     sim = simulation(chain(3, 2 * A, a=A), lines, newton="off",
                      before_pair="comm_modify vel yes cutoff 9\nneigh_modify exclude molecule/intra all",
@@ -141,7 +145,8 @@ def test_fix_adapt_varies_the_viscosity(simulation):
 def test_fix_adapt_may_set_the_viscosity_back(simulation):
     sim = simulation(three_free(), f"cut_off_distance inf {EXACT}")
     first = sim.run().drag
-    sim.commands(["variable eta equal 4.0", "fix vary all adapt 1 pair stokes_dynamics visc * * v_eta reset yes"]).run(2)
+    sim.commands(["variable eta equal 4.0", "fix vary all adapt 1 pair stokes_dynamics visc * * v_eta reset yes"]).run(
+        2)
     assert largest_difference(sim.drag, first * 4.0 / 1.3) < 1e-10
     sim.commands("unfix vary").run()
     assert largest_difference(sim.drag, first) < 1e-10

@@ -1,5 +1,5 @@
-"""Other commands of LAMMPS beside the Stokes styles: each row of the table of neighbours (common/neighbours.h) says what the page
-says, and says nothing of the same command on other atoms."""
+"""Other commands of LAMMPS beside the Stokes styles: each row of the table of neighbours (common/neighbours.h) says
+what the page says, and says nothing of the same command on other atoms."""
 import os
 import re
 
@@ -18,15 +18,18 @@ ELLIPSOID, ROUND = "hybrid sphere ellipsoid", "set group all shape 2 2 2 quat 0 
 OVERLAP = "set atom 1*2 mol 1\nset atom 2 x -5"
 
 
-def scene(words=WORDS, pair="", coeff="", atoms="hybrid sphere bond", hybrid="hybrid/overlay", before="", boundary="f f f"):
-    """Two spheres of the group ours, type 1, which alone are selected, and two others, type 2. Beside the pair style another one
-    with the pair_coeff `coeff`, in which NAME is its name."""
+def scene(words=WORDS, pair="", coeff="", atoms="hybrid sphere bond", hybrid="hybrid/overlay", before="",
+          boundary="f f f"):
+    """Two spheres of the group ours, type 1, which alone are selected, and two others, type 2. Beside the pair style
+    another one with the pair_coeff `coeff`, in which NAME is its name."""
     plugin = f"stokes_dynamics {words} group ours"
-    lines = ["units lj", f"atom_style {atoms}", "comm_modify vel yes cutoff 8", "atom_modify map array", f"boundary {boundary}",
-             "plugin load stokesdynplugin.so", "region box prism -9 9 -9 9 -9 9 0 0 0",
-             "create_box 2 box" + (" bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 4" if "bond" in atoms else "")]
+    lines = ["units lj", f"atom_style {atoms}", "comm_modify vel yes cutoff 8", "atom_modify map array",
+             f"boundary {boundary}", "plugin load stokesdynplugin.so", "region box prism -9 9 -9 9 -9 9 0 0 0",
+             "create_box 2 box" + (" bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 4" if "bond" in atoms
+                                   else "")]
     lines += [f"create_atoms {kind} single {x} 0 0" for kind, x in ((1, -6.0), (1, -3.5), (2, 3.5), (2, 6.0))]
-    lines += ["set group all diameter 2.0 density 1.7", "group ours type 1", "group others type 2", *before.splitlines()]
+    lines += ["set group all diameter 2.0 density 1.7", "group ours type 1", "group others type 2",
+              *before.splitlines()]
     if pair:
         lines += [f"pair_style {hybrid} {pair} {plugin} zero 3.0", "pair_coeff * * zero",
                   f"pair_coeff {coeff.replace('NAME', pair.split()[0])}"]
@@ -42,7 +45,8 @@ def fixed(line, move=OVERDAMPED, **more):
 
 def paired(pair, coeff, move=OVERDAMPED, **more):
     """The commands with another pair style, between types IJ."""
-    return lambda ours: scene(pair=pair, coeff=coeff.replace("IJ", "1 1" if ours else "2 2"), **more) + move.splitlines()
+    return lambda ours: scene(pair=pair, coeff=coeff.replace("IJ", "1 1" if ours else "2 2"),
+                              **more) + move.splitlines()
 
 
 def prepared(before, move=OVERDAMPED, **more):
@@ -66,36 +70,48 @@ LANGEVIN = "FIX viscous viscous/kk langevin*"
 CASES = [
     (LANGEVIN, "FORCE", fixed("fix b GROUP viscous 1", INERTIA),
      "fix b of style viscous adds a drag to spheres that the fluid drags as well, so"),
-    (LANGEVIN, "FORCE", fixed("fix b GROUP langevin 1 1 1 77", "fix move ours nve/sphere", words=f"{WORDS} add_force yes"),
+    (LANGEVIN, "FORCE", fixed("fix b GROUP langevin 1 1 1 77", "fix move ours nve/sphere",
+                              words=f"{WORDS} add_force yes"),
      "fix b of style langevin adds a drag to spheres that the fluid drags as well, so that drag counts twice"),
     (LANGEVIN, "OVERDAMPED", fixed("fix b GROUP viscous 1"),
      "fix b of style viscous adds a drag to spheres that the fluid drags as well: take"),
-    (LANGEVIN, "OVERDAMPED", fixed("fix b GROUP langevin 1 1 1 77"), "noise is the keyword temperature of fix stokes_dynamics/overdamped"),
+    (LANGEVIN, "OVERDAMPED", fixed("fix b GROUP langevin 1 1 1 77"),
+     "noise is the keyword temperature of fix stokes_dynamics/overdamped"),
     ("FIX viscous/sphere", "TURNING", fixed("fix b GROUP viscous/sphere 1", INERTIA, words=TURN, before=TODAY),
      "fix b of style viscous/sphere damps spins"),
-    ("FIX rigid*", "FORCE", fixed("fix b GROUP rigid single langevin 1 1 1 77", "fix drag ours stokes_dynamics"), "(keyword langevin)"),
+    ("FIX rigid*", "FORCE", fixed("fix b GROUP rigid single langevin 1 1 1 77", "fix drag ours stokes_dynamics"),
+     "(keyword langevin)"),
     ("FIX rigid*", "FORCE", fixed("fix b GROUP rigid/small molecule langevin 1 1 1 77", "fix drag ours stokes_dynamics",
                                   before="set group all mol 1"), "(keyword langevin)"),
     ("FIX brownian*", "FORCE", fixed("fix b GROUP brownian 1 77 gamma_t 1", "fix drag ours stokes_dynamics"),
      "fix b of style brownian moves spheres"),
-    ("PAIR lubricate* brownian*", "FORCE", paired("lubricate 1 1 1 2.01 2.5", "IJ NAME", INERTIA), "pair_style lubricate has a drag"),
-    ("PAIR lubricate* brownian*", "FORCE", paired("brownian 1 1 1 2.01 2.5 1 77", "IJ NAME", INERTIA), "pair_style brownian has a drag"),
-    ("PAIR lubricate* brownian*", "OVERDAMPED", paired("lubricate 1 1 1 2.01 2.5", "IJ NAME"), "pair_style lubricate has a drag or noise"),
+    ("PAIR lubricate* brownian*", "FORCE", paired("lubricate 1 1 1 2.01 2.5", "IJ NAME", INERTIA),
+     "pair_style lubricate has a drag"),
+    ("PAIR lubricate* brownian*", "FORCE", paired("brownian 1 1 1 2.01 2.5 1 77", "IJ NAME", INERTIA),
+     "pair_style brownian has a drag"),
+    ("PAIR lubricate* brownian*", "OVERDAMPED", paired("lubricate 1 1 1 2.01 2.5", "IJ NAME"),
+     "pair_style lubricate has a drag or noise"),
     ("PAIR lubricate* brownian*", "OVERDAMPED", paired("brownian 1 1 1 2.01 2.5 1 77", "IJ NAME", NOISY),
      "pair_style brownian has a drag or noise"),
     ("FIX move", "OVERDAMPED", fixed("fix b GROUP move linear 0 0 1"), "fix b of style move integrates spheres"),
     ("FIX *", "OVERDAMPED", fixed("fix b GROUP nve/sphere"), "fix b of style nve/sphere integrates spheres"),
  
-       ("FIX */asphere*", "FORCE | TURNING", fixed("fix b GROUP nve/asphere", "fix drag ours stokes_dynamics", words=TURN, atoms=ELLIPSOID,
-                                                before=ROUND), "fix b of style nve/asphere turns spheres by"),
-    ("FIX setforce freeze", "OVERDAMPED", fixed("fix b GROUP setforce 0 0 0"), "fix b of style setforce sets forces to 0"),
-    ("FIX addtorque", "TURNING", lambda ours: fixed("group one id %d\nfix b one addtorque 0 0 1" % (1 if ours else 4), words=TURN)(ours),
+       ("FIX */asphere*", "FORCE | TURNING", fixed("fix b GROUP nve/asphere", "fix drag ours stokes_dynamics",
+                                                   words=TURN, atoms=ELLIPSOID, before=ROUND),
+        "fix b of style nve/asphere turns spheres by"),
+    ("FIX setforce freeze", "OVERDAMPED", fixed("fix b GROUP setforce 0 0 0"),
+     "fix b of style setforce sets forces to 0"),
+    ("FIX addtorque", "TURNING", lambda ours: fixed("group one id %d\nfix b one addtorque 0 0 1" % (1 if ours else 4),
+                                                    words=TURN)(ours),
      "fix b of style addtorque pushes the atoms of its group"),
-    (GRAN, "OVERDAMPED", paired(HOOKE.format(0.3, 0), "IJ NAME"), "pair_style gran/hooke/history damps its contacts (gamma 0.3)"),
-    (GRAN, "OVERDAMPED | NOISE", paired(HOOKE.format(0, 0.4), "IJ NAME", NOISY), "pair_style gran/hooke/history has friction (0.4)"),
+    (GRAN, "OVERDAMPED", paired(HOOKE.format(0.3, 0), "IJ NAME"),
+     "pair_style gran/hooke/history damps its contacts (gamma 0.3)"),
+    (GRAN, "OVERDAMPED | NOISE", paired(HOOKE.format(0, 0.4), "IJ NAME", NOISY),
+     "pair_style gran/hooke/history has friction (0.4)"),
     ("PAIR granular", "OVERDAMPED", paired("granular", "IJ NAME hooke 10 0 tangential linear_nohistory 0 0"),
      "pair_style granular must have no damping"),
-    ("PAIR granular", "OVERDAMPED | NOISE", paired("granular", "IJ NAME hooke 10 0 tangential linear_nohistory 0 0", NOISY),
+    ("PAIR granular", "OVERDAMPED | NOISE", paired("granular", "IJ NAME hooke 10 0 tangential linear_nohistory 0 0",
+                                                   NOISY),
      "pair_style granular must have no friction"),
     ("FIX wall/gran*", "OVERDAMPED", fixed("fix b GROUP wall/gran hooke 10 NULL 0 NULL 0 0 zplane -8 8"),
      "fix b of style wall/gran must have no damping"),
@@ -105,30 +121,39 @@ CASES = [
      "fix b of style damping/cundall makes forces"),
     ("PAIR *dpd* bpm/spring", "OVERDAMPED", paired("dpd 2.5", "IJ NAME 4.5", before=TODAY),
      "pair_style dpd has friction between spheres (gamma 4.5)"),
-    ("PAIR *dpd* bpm/spring", "OVERDAMPED", paired("bpm/spring 2.5", "IJ NAME 4.5", before=TODAY), "pair_style bpm/spring has friction"),
-    ("PAIR *dpd*", "OVERDAMPED", paired("mdpd/rhosum 2.5", "IJ NAME 1", before=TODAY), "pair_style mdpd/rhosum has friction or noise"),
+    ("PAIR *dpd* bpm/spring", "OVERDAMPED", paired("bpm/spring 2.5", "IJ NAME 4.5", before=TODAY),
+     "pair_style bpm/spring has friction"),
+    ("PAIR *dpd*", "OVERDAMPED", paired("mdpd/rhosum 2.5", "IJ NAME 1", before=TODAY),
+     "pair_style mdpd/rhosum has friction or noise"),
     ("BOND bpm/*", "OVERDAMPED", bonded("bpm/spring", 15), "bond_style bpm/spring damps its bonds (gamma 15)"),
     ("BOND bpm/*", "OVERDAMPED", bonded("bpm/rotational", 15), "bond_style bpm/rotational damps its bonds (gamma 15)"),
-    ("BOND bpm/*", "OVERDAMPED", bonded("bpm/spring/plastic", 15), "bond_style bpm/spring/plastic must have no damping"),
-    ("BOND bpm/rotational", "OVERDAMPED | UPRIGHT", bonded("bpm/rotational", 0), "bond_style bpm/rotational needs spheres that turn"),
+    ("BOND bpm/*", "OVERDAMPED", bonded("bpm/spring/plastic", 15),
+     "bond_style bpm/spring/plastic must have no damping"),
+    ("BOND bpm/rotational", "OVERDAMPED | UPRIGHT", bonded("bpm/rotational", 0),
+     "bond_style bpm/rotational needs spheres that turn"),
     ("ATOM dipole", "OVERDAMPED | UPRIGHT", prepared("set group GROUP dipole 1 0 0", atoms="hybrid sphere dipole"),
      "atom_style dipole has directions (the dipole of atom 1)"),
  
        ("ATOM ellipsoid", "0", prepared(f"{ROUND}\nset group GROUP shape 3 1 1", atoms=ELLIPSOID),
      "atom_style ellipsoid gives atom 1 a shape"),
  
-       ("FIX gravity", "0", fixed("fix b GROUP gravity 1 vector 0 0 -1", before=f"{OVERLAP}\nset atom 3*4 mol 2\nset atom 3 x 5"),
+       ("FIX gravity", "0", fixed("fix b GROUP gravity 1 vector 0 0 -1", before=f"{OVERLAP}\nset atom 3*4 mol 2\n"
+                                  "set atom 3 x 5"),
      "fix b of style gravity pulls on the mass of each sphere, and in the clump of molecule 1 spheres overlap"),
 ]
 # those that act on whatever atoms
 ANYWHERE = [
-    ("FIX dt/reset", "OVERDAMPED | NOISE", fixed("fix b GROUP dt/reset 10 NULL 0.1 0.1", NOISY), "fix b of style dt/reset makes steps"),
-    ("FIX deform*", "OVERDAMPED | ADAPTING", fixed("fix b GROUP deform 1 z erate 0.1 units box", f"{OVERDAMPED} adapt 1 1e-3 1 0.1"),
+    ("FIX dt/reset", "OVERDAMPED | NOISE", fixed("fix b GROUP dt/reset 10 NULL 0.1 0.1", NOISY),
+     "fix b of style dt/reset makes steps"),
+    ("FIX deform*", "OVERDAMPED | ADAPTING", fixed("fix b GROUP deform 1 z erate 0.1 units box",
+                                                   f"{OVERDAMPED} adapt 1 1e-3 1 0.1"),
      "fix b of style deform counts its rate"),
     ("FIX deform*", "RESTING", fixed("fix b GROUP deform 1 xy erate 0.1 remap v", boundary="p p p"),
      "fix b of style deform deforms the box with remap v"),
-    ("COMPUTE pressure*", "0", fixed("compute P all pressure NULL pair"), "compute P of style pressure knows nothing of the forces"),
-    ("COMPUTE pressure*", "0", fixed("thermo_style custom step pxx"), "compute thermo_press of style pressure knows nothing of the forces"),
+    ("COMPUTE pressure*", "0", fixed("compute P all pressure NULL pair"),
+     "compute P of style pressure knows nothing of the forces"),
+    ("COMPUTE pressure*", "0", fixed("thermo_style custom step pxx"),
+     "compute thermo_press of style pressure knows nothing of the forces"),
     ("COMPUTE pressure*", "0", fixed("thermo_style custom step press", INERTIA),
      "compute thermo_press of style pressure knows nothing of the forces"),
 ]
@@ -161,7 +186,8 @@ def test_a_row_speaks_of_atoms_of_ours(simulation, tmp_path, case, ours):
     row, facts, lines, message = case
     verdicts = {verdict for r, where, verdict in rows() if (r, where) == (row, facts)}
     assert verdicts
-    # LAMMPS of today divides by the moment of inertia of one atom, 0, and loses the atoms of a rigid body with langevin one time in six
+    # LAMMPS of today divides by the moment of inertia of one atom, 0, and loses the atoms of a rigid body with langevin
+    # one time in six
     steps = 0 if row == "FIX addtorque" or "langevin" in message and row == "FIX rigid*" else 2
     error, warnings = said(simulation, tmp_path, lines(ours), steps)
     if ours or case in ANYWHERE:
@@ -179,26 +205,29 @@ def test_every_row_has_a_case():
 
 
 @pytest.mark.parametrize("factor, says", [
-    ("1.0", ""), ("0.5", "scales forces of stokes_dynamics by 0.5"), ("v_half", "scales forces of stokes_dynamics by v_half")])
+    ("1.0", ""), ("0.5", "scales forces of stokes_dynamics by 0.5"),
+    ("v_half", "scales forces of stokes_dynamics by v_half")])
 def test_a_hybrid_may_not_scale_the_forces(simulation, tmp_path, factor, says):
     lines = scene()
     at = lines.index(f"pair_style stokes_dynamics {WORDS} group ours")
-    lines[at:at + 2] = ["variable half equal 1.0", f"pair_style hybrid/scaled 1.0 zero 3.0 {factor} stokes_dynamics {WORDS} group ours",
+    lines[at:at + 2] = ["variable half equal 1.0",
+                        f"pair_style hybrid/scaled 1.0 zero 3.0 {factor} stokes_dynamics {WORDS} group ours",
                         "pair_coeff * * zero", "pair_coeff * * stokes_dynamics"]
     error, _ = said(simulation, tmp_path, lines + [OVERDAMPED])
     assert says in error if says else not error, error
 
 
 def test_spheres_that_are_held_may_be_moved_and_need_no_force(simulation, tmp_path):
-    lines = scene() + ["group one id 1", "fix a one move linear 0 0 1", "fix b one setforce 0 0 0", f"{OVERDAMPED} held one"]
+    lines = scene() + ["group one id 1", "fix a one move linear 0 0 1", "fix b one setforce 0 0 0",
+                       f"{OVERDAMPED} held one"]
     error, warnings = said(simulation, tmp_path, lines)
     assert not error and "sets forces to 0" not in warnings
 
 
 FINE = {
     "a drag where nobody applies ours": scene() + ["fix b ours viscous 1", "fix move ours nve/sphere"],
-    "a drag where ours is applied to others": scene() + ["group one id 1", "group two id 2", "fix drag one stokes_dynamics",
-                                                         "fix b two viscous 1",
+    "a drag where ours is applied to others": scene() + ["group one id 1", "group two id 2",
+                                                         "fix drag one stokes_dynamics", "fix b two viscous 1",
                                                          "fix move ours nve/sphere"],
     "rigid without langevin": scene() + ["fix drag ours stokes_dynamics", "fix b ours rigid single"],
     "spins that the fluid does not damp": scene(before=TODAY) + ["fix b ours viscous/sphere 1", *INERTIA.splitlines()],
@@ -211,10 +240,12 @@ FINE = {
     "contacts without damping": paired(HOOKE.format(0, 0), "IJ NAME")(True),
     "pairs without friction": paired("dpd 2.5", "IJ NAME 0", before=TODAY)(True),
     "bonds without damping": bonded("bpm/spring", 0)(True),
-    "dipoles where spheres turn": prepared("set group ours dipole 1 0 0", words=TURN, atoms="hybrid sphere dipole")(True),
+    "dipoles where spheres turn": prepared("set group ours dipole 1 0 0", words=TURN,
+                                           atoms="hybrid sphere dipole")(True),
     "dipoles of length 0": scene(atoms="hybrid sphere dipole") + [OVERDAMPED],
     "an ellipsoid that is a sphere": scene(atoms=ELLIPSOID, before=ROUND) + [OVERDAMPED],
-    "clumps that touch": scene(before="set atom 1*2 mol 1\nset atom 2 x -4.05") + ["fix b all gravity 1 vector 0 0 -1", OVERDAMPED],
+    "clumps that touch": scene(before="set atom 1*2 mol 1\nset atom 2 x -4.05") +
+    ["fix b all gravity 1 vector 0 0 -1", OVERDAMPED],
 }
 
 
@@ -222,12 +253,15 @@ FINE = {
 def test_what_goes_together_has_no_word(simulation, tmp_path, what):
     error, warnings = said(simulation, tmp_path, FINE[what])
     assert not error
-    assert not re.findall("^.*(?:Fix|Pair style) stokes_dynamics.*: (?:fix|pair_style|atom_style|compute) .*", warnings, re.M)
+    assert not re.findall("^.*(?:Fix|Pair style) stokes_dynamics.*: (?:fix|pair_style|atom_style|compute) .*", warnings,
+                          re.M)
 
 
-@pytest.mark.nothing_to_test_if(not lammps_source(), "installed headers do not tell what fix gravity disable is, so that it is warned of")
+@pytest.mark.nothing_to_test_if(not lammps_source(),
+                                "installed headers do not tell what fix gravity disable is, so that it is warned of")
 def test_gravity_that_only_fix_rigid_knows_has_no_word(simulation, tmp_path):
-    _, warnings = said(simulation, tmp_path, scene(before=OVERLAP) + ["fix b all gravity 1 vector 0 0 -1 disable", OVERDAMPED])
+    _, warnings = said(simulation, tmp_path, scene(before=OVERLAP) + ["fix b all gravity 1 vector 0 0 -1 disable",
+                                                                      OVERDAMPED])
     assert "gravity pulls" not in warnings
 
 
@@ -243,12 +277,15 @@ def test_two_ranks_say_the_same(tmp_path, case):
     """The group is on one rank only, and so is the clump."""
     error = dict(((row, where), verdict) for row, where, verdict in rows())[case[:2]] == "ERROR"
     for ours in (True, False):
-        finished = lmp(tmp_path, ["processors 2 1 1"] + case[2](ours) + ["run 1"], ranks=2, succeed=not (ours and error))
+        finished = lmp(tmp_path, ["processors 2 1 1"] + case[2](ours) + ["run 1"], ranks=2,
+                       succeed=not (ours and error))
         assert (case[3] in finished.text) == ours
         assert (finished.code != 0) == (ours and error)
 
 
 def test_a_clump_across_ranks_overlaps(tmp_path):
-    lines = scene(before="set atom 2*3 mol 7\nset atom 2 x -0.5\nset atom 3 x 0.5\nset atom 3 type 1\ngroup ours type 1")
-    finished = lmp(tmp_path, ["processors 2 1 1"] + lines + ["fix g all gravity 1 vector 0 0 -1", OVERDAMPED, "run 0"], ranks=2)
+    lines = scene(before="set atom 2*3 mol 7\nset atom 2 x -0.5\nset atom 3 x 0.5\nset atom 3 type 1\n"
+                         "group ours type 1")
+    finished = lmp(tmp_path, ["processors 2 1 1"] + lines + ["fix g all gravity 1 vector 0 0 -1", OVERDAMPED, "run 0"],
+                   ranks=2)
     assert "in the clump of molecule 7 spheres overlap" in finished.text

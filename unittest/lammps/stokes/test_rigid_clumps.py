@@ -21,7 +21,8 @@ def rotation_matrix(rng):
 
 
 def many(name, count, seed=1, spacing=15.0, a=1.0):
-    """count copies of a cluster on a row, each turned, its spheres in another order, in rigid motion; returns motion too."""
+    """count copies of a cluster on a row, each turned, its spheres in another order, in rigid motion; returns motion
+    too."""
     rng = np.random.default_rng(seed)
     shape = CLUSTERS[name]
     x, v, w, molecule, turn, orders = [], [], [], [], [], []
@@ -68,14 +69,16 @@ def test_one_point_with_rotation_is_the_ordinary_solve(simulation, name):
 
 
 def exact_kind(name):
-    return next(r["kind"] for r in read_table("clusters_full.csv") if r["name"] == name and r["kind"].startswith("exact"))
+    return next(r["kind"] for r in read_table("clusters_full.csv") if r["name"] == name and
+                r["kind"].startswith("exact"))
 
 
 @pytest.mark.parametrize("shell", [12, 42])
 @pytest.mark.parametrize("name", CLUSTERS)
 def test_shells_come_close_to_the_exact_drag(simulation, name, shell):
     x = CLUSTERS[name]
-    R = resistance(simulation(Spheres(x, molecule=1), f"clumps_only yes rigid_clumps yes shell {shell} visc 1", comm=WIDE), x)
+    R = resistance(simulation(Spheres(x, molecule=1), f"clumps_only yes rigid_clumps yes shell {shell} visc 1",
+                              comm=WIDE), x)
     exact = tabulated(name, exact_kind(name))
     assert np.abs(R - R.T).max() < 1e-9 * np.abs(R).max()
     for block, limit in ((slice(0, 3), TRANSLATION[shell]), (slice(3, 6), ROTATION[shell])):
@@ -86,7 +89,8 @@ def test_shells_come_close_to_the_exact_drag(simulation, name, shell):
 def test_lone_spheres_and_single_sphere_clumps_have_stokes_drag_and_torque(simulation):
     a, eta = 0.7, 1.3
     v, w = np.array([[0.3, -1.0, 0.4], [0.7, 0.1, -0.2]]), np.array([[0.2, 0.5, -0.4], [1.0, -0.3, 0.6]])
-    sim = simulation(Spheres([[0, 0, 0], [1.1, 0.3, 0]], a, v, [0, 4]), f"clumps_only yes rigid_clumps yes shell 42 visc {eta}")
+    sim = simulation(Spheres([[0, 0, 0], [1.1, 0.3, 0]], a, v, [0, 4]),
+                     f"clumps_only yes rigid_clumps yes shell 42 visc {eta}")
     F, T = forces_and_torques(sim, w)
     assert np.abs(F + 6 * np.pi * eta * a * v).max() < 1e-10 * np.abs(F).max()
     assert np.abs(T + 8 * np.pi * eta * a**3 * w).max() < 1e-10 * np.abs(T).max()
@@ -98,7 +102,8 @@ def test_equal_clumps_share_one_shape_and_mirror_images_do_not(tmp_path):
     both = Spheres(np.vstack((spheres.x, mirror.x)), 1.0, np.vstack((spheres.v, mirror.v)),
                    np.concatenate((spheres.molecule, mirror.molecule)))
     for n, system in ((1, spheres), (2, both)):
-        text = lmp(tmp_path, input_lines(system, "clumps_only yes rigid_clumps yes shell 12 visc 1", tmp_path / "data", comm=WIDE)
+        text = lmp(tmp_path, input_lines(system, "clumps_only yes rigid_clumps yes shell 12 visc 1", tmp_path / "data",
+                                         comm=WIDE)
                    + ["run 0", "run 0"], ranks=2).log
         assert text.count("Rigid clumps, shape") == n
         assert "hydrodynamic radius" in text
@@ -109,7 +114,8 @@ def test_mirror_image_flips_the_coupling(simulation):
     x, P = CLUSTERS["helix4_chiral"], np.diag([1.0, 1.0, -1.0])
     couplings = []
     for y in (x, x @ P):
-        R = resistance(simulation(Spheres(y, molecule=1), "clumps_only yes rigid_clumps yes shell 42 visc 1", comm=WIDE), y)
+        R = resistance(simulation(Spheres(y, molecule=1), "clumps_only yes rigid_clumps yes shell 42 visc 1",
+                                  comm=WIDE), y)
         couplings.append(R[:3, 3:])
     assert np.abs(couplings[0]).max() > 0.5
     assert np.abs(couplings[1] + P @ couplings[0] @ P).max() < 1e-9 * np.abs(couplings[0]).max()
@@ -119,7 +125,8 @@ def test_mirror_image_flips_the_coupling(simulation):
 G = np.array([[0.2, 0.3, -0.2], [0.1, -0.5, 0.5], [-0.4, 0.25, 0.3]])
 FORMULAS = "\n".join("variable g{} atom {}*x+{}*y+{}*z".format(n, *row) for n, row in zip("xyz", G))
 STORED = ("fix u all property/atom d_ux d_uy d_uz\n" + "\n".join(f"set group all d_u{n} v_g{n}" for n in "xyz")
-          + "\ncompute u all property/atom d_ux d_uy d_uz\n" + "\n".join(f"variable s{n} atom c_u[{k + 1}]" for k, n in enumerate("xyz")))
+          + "\ncompute u all property/atom d_ux d_uy d_uz\n" +
+          "\n".join(f"variable s{n} atom c_u[{k + 1}]" for k, n in enumerate("xyz")))
 
 
 @pytest.mark.parametrize("name", ["doublet", "trimer_line", "square", "tetrahedron", "helix4_chiral"])
@@ -138,22 +145,25 @@ def test_flow_stored_per_atom_is_the_flow_of_the_formulas_where_the_clump_spans_
     spheres, omega = many("tetrahedron", 2)
     answers = []
     for prefix, lines in (("g", FORMULAS), ("s", FORMULAS + "\n" + STORED)):
-        sim = simulation(spheres, f"clumps_only yes rigid_clumps yes shell 12 visc 1.3 fluid_velocity v_{prefix}x v_{prefix}y v_{prefix}z",
+        sim = simulation(spheres, f"clumps_only yes rigid_clumps yes shell 12 visc 1.3 fluid_velocity v_{prefix}x "
+                                  f"v_{prefix}y v_{prefix}z",
                          before_pair=lines, comm=WIDE)
         answers.append(np.hstack(forces_and_torques(sim, omega)))
     assert np.abs(answers[0] - answers[1]).max() < 1e-9 * np.abs(answers[0]).max()
 
 
 def test_chain_along_the_flow_of_a_shear_feels_the_vorticity(simulation):
-    """u_x = g z, chain of 3 along x: its centres see no velocity at all, but it must turn. Against the ordinary solve with torques."""
+    """u_x = g z, chain of 3 along x: its centres see no velocity at all, but it must turn. Against the ordinary solve
+    with torques."""
     g = 0.9
     spheres = Spheres(CLUSTERS["trimer_line"][:, [2, 1, 0]], 1.0, molecule=1)
-    # The strain turns a row of touching spheres by the part B of Jeffery's orbit; at rest, torque = R_rot g/2 (1 - B) about y.
+    # The strain turns a row of touching spheres by the part B of Jeffery's orbit; at rest, torque = R_rot g/2 (1 - B)
+    # about y.
     R = resistance(simulation(spheres, f"clumps_only yes visc 1 rotation yes {SOLVED}", comm=WIDE), spheres.x)
     answers = []
     for words in (f"rotation yes {SOLVED}", "rigid_clumps yes rotation yes"):
-        sim = simulation(spheres, f"clumps_only yes visc 1 {words} fluid_velocity v_ux 0 0", before_pair=f"variable ux atom {g}*z",
-                         comm=WIDE)
+        sim = simulation(spheres, f"clumps_only yes visc 1 {words} fluid_velocity v_ux 0 0",
+                         before_pair=f"variable ux atom {g}*z", comm=WIDE)
         sim.run(0)
         F, T = sim.drag, torques(sim)
         answers.append((T + np.cross(spheres.x, F)).sum(axis=0))
@@ -163,15 +173,18 @@ def test_chain_along_the_flow_of_a_shear_feels_the_vorticity(simulation):
 
 @pytest.mark.parametrize("words", ["rotation no", "rotation yes", "shell 12"])
 def test_ranks_periodic_borders_and_order_leave_the_motion_alone(tmp_path, words):
-    """Clumps that move under fix rigid/small in a periodic box, across its borders, 1 against 2 and 4 ranks, list and tiled."""
+    """Clumps that move under fix rigid/small in a periodic box, across its borders, 1 against 2 and 4 ranks, list and
+    tiled."""
     spheres, _ = many("tetrapod5", 6, spacing=9.0)
     box = [(-9.0, 45.0), (-9.0, 9.0), (-9.0, 9.0)]
     last = {}
     for ranks, comm in allowed((1, ""), (2, ""), (4, "comm_style tiled\nbalance 1.0 rcb")):
-        lines = input_lines(spheres, f"clumps_only yes rigid_clumps yes {words} visc 1.3", tmp_path / "data", boundary="p p p", box=box,
-                            comm="comm_modify cutoff 6\n" + comm, dt=0.01)
-        lines += ["thermo_style custom step", "fix down all addforce 3.0 1.0 -2.0", "fix rigid all rigid/small molecule"]
-        lines += dump_lines(tmp_path / "dump", every=200, columns="xu yu zu vx vy vz f_drag[1] f_drag[2] f_drag[3]") + ["run 200"]
+        lines = input_lines(spheres, f"clumps_only yes rigid_clumps yes {words} visc 1.3", tmp_path / "data",
+                            boundary="p p p", box=box, comm="comm_modify cutoff 6\n" + comm, dt=0.01)
+        lines += ["thermo_style custom step", "fix down all addforce 3.0 1.0 -2.0",
+                  "fix rigid all rigid/small molecule"]
+        lines += dump_lines(tmp_path / "dump", every=200,
+                            columns="xu yu zu vx vy vz f_drag[1] f_drag[2] f_drag[3]") + ["run 200"]
         lmp(tmp_path, lines, ranks=ranks)
         last[ranks] = read_dump(tmp_path / "dump")[-1][1]
     assert np.abs(last[1][:, 0:3] - spheres.x).max() > 0.5
@@ -182,12 +195,15 @@ def test_ranks_periodic_borders_and_order_leave_the_motion_alone(tmp_path, words
 
 def test_restart_goes_on_as_the_unbroken_run(tmp_path):
     spheres, _ = many("helix4_chiral", 3)
-    lines = input_lines(spheres, "clumps_only yes rigid_clumps yes shell 12 visc 1.3", tmp_path / "data", comm=WIDE, dt=0.01)
+    lines = input_lines(spheres, "clumps_only yes rigid_clumps yes shell 12 visc 1.3", tmp_path / "data", comm=WIDE,
+                        dt=0.01)
     moves = ["thermo_style custom step", "fix down all addforce 3.0 1.0 -2.0", "fix rigid all rigid/small molecule"]
     columns = "xu yu zu vx vy vz f_drag[1] f_drag[7] f_drag[8]"
-    lmp(tmp_path, lines + moves + [f"restart 50 {tmp_path}/restart"] + dump_lines(tmp_path / "whole", every=100, columns=columns)
+    lmp(tmp_path, lines + moves + [f"restart 50 {tmp_path}/restart"] +
+        dump_lines(tmp_path / "whole", every=100, columns=columns)
         + ["run 100"])
-    lmp(tmp_path, ["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/restart.50", WIDE, "fix drag all stokes_dynamics"] + moves
+    lmp(tmp_path, ["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/restart.50", WIDE,
+                   "fix drag all stokes_dynamics"] + moves
         + dump_lines(tmp_path / "rest", every=100, columns=columns) + ["run 50"])
     whole, rest = read_dump(tmp_path / "whole")[-1][1], read_dump(tmp_path / "rest")[-1][1]
     assert np.abs(whole - rest).max() < 1e-10 * np.abs(whole).max()

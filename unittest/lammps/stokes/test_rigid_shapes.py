@@ -1,4 +1,5 @@
-"""rigid_clumps yes and auto: which clumps have one shape, runs that end in an error and the next, molecule IDs, clumps that are not rigid."""
+"""rigid_clumps yes and auto: which clumps have one shape, runs that end in an error and the next, molecule IDs, clumps
+that are not rigid."""
 import re
 
 import numpy as np
@@ -12,19 +13,23 @@ from test_rotation import CLUSTERS, resistance
 
 # --- which clumps have the same shape
 
-# Third sphere of an angle of three (size 2.6) displaced: each is the shape of the one before, but the first and the last are 2 d apart.
+# Third sphere of an angle of three (size 2.6) displaced: each is the shape of the one before, but the first and the
+# last are 2 d apart.
 @pytest.mark.parametrize("d", [0.0, 3e-6, 1e-4, 2e-4, 2.5e-4, 1e-3])
 def test_nearly_equal_clumps_have_their_drag_on_any_ranks(tmp_path, d):
     angle = np.array([(0, 0, 0), (2, 0, 0), (0, 2, 0)], float)
     centres = [(-10, 0, 0), (10, 0, 0), (10, 0, 8)]
-    x = np.vstack([angle + (0, 0, 0) + c + np.array([(0, 0, 0), (0, 0, 0), (0, k * d, 0)]) for k, c in enumerate(centres)])
+    x = np.vstack([angle + (0, 0, 0) + c + np.array([(0, 0, 0), (0, 0, 0), (0, k * d, 0)])
+                   for k, c in enumerate(centres)])
     spheres = Spheres(x, 1.0, (1.0, 0, 0), np.repeat([1, 2, 3], 3))
     totals, shapes = [], []
     for ranks, processors in ((1, "1 1 1"), (2, "2 1 1"), (2, "1 1 2")):
         lines = input_lines(spheres, "clumps_only yes rigid_clumps yes shell 12 visc 1", tmp_path / "data",
                             comm=f"processors {processors}\ncomm_modify cutoff 10")
-        shapes.append(lmp(tmp_path, [lines[0], f"processors {processors}"] + [w for w in lines[1:] if not w.startswith("processors")]
-                          + dump_lines(tmp_path / "dump", columns="f_drag[1]") + ["run 0"], ranks=ranks).log.count("Rigid clumps, shape"))
+        shapes.append(lmp(tmp_path, [lines[0], f"processors {processors}"] +
+                          [w for w in lines[1:] if not w.startswith("processors")]
+                          + dump_lines(tmp_path / "dump", columns="f_drag[1]") + ["run 0"],
+                          ranks=ranks).log.count("Rigid clumps, shape"))
         F = read_dump(tmp_path / "dump")[-1][1][:, 0]
         totals.append(F.reshape(3, 3).sum(axis=1))
     assert np.abs(np.array(totals) / -30.825 - 1).max() < 1e-3
@@ -37,14 +42,17 @@ def block(n, digits, seed=3):
     rng = np.random.default_rng(seed)
     shape = np.vstack([CLUSTERS["cube8"], [(0.3, -0.2, 2.6), (0.1, 2.9, 0.4)]])
     side = int(np.ceil(n ** (1 / 3)))
-    x = np.vstack([shape @ rotation_matrix(rng).T + 12.0 * np.array([k % side, k // side % side, k // side**2]) - 6.0 * side
+    x = np.vstack([shape @ rotation_matrix(rng).T + 12.0 * np.array([k % side, k // side % side, k // side**2]) - 6.0 *
+                   side
                    for k in range(n)])
-    return Spheres(np.array([[float(f"%.{digits}g" % c) for c in row] for row in x]), 1.0, molecule=np.repeat(np.arange(1, n + 1), 10))
+    return Spheres(np.array([[float(f"%.{digits}g" % c) for c in row] for row in x]), 1.0,
+                   molecule=np.repeat(np.arange(1, n + 1), 10))
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_equal_clumps_from_a_file_of_six_digits_share_one_shape(tmp_path, ranks):
-    text = lmp(tmp_path, input_lines(block(500, 6), "clumps_only yes rigid_clumps yes shell 12 visc 1", tmp_path / "data", comm="comm_modify cutoff 12")
+    text = lmp(tmp_path, input_lines(block(500, 6), "clumps_only yes rigid_clumps yes shell 12 visc 1",
+                                     tmp_path / "data", comm="comm_modify cutoff 12")
                + ["run 0"], ranks=ranks).log
     assert text.count("Rigid clumps, shape") == 1
 
@@ -54,7 +62,8 @@ def test_clumps_that_all_differ_are_told_apart_in_little_time(tmp_path):
     spheres = block(1500, 12)
     rng = np.random.default_rng(5)
     spheres.x[9::10] += rng.uniform(-0.5, 0.5, size=(1500, 3))
-    text = lmp(tmp_path, input_lines(spheres, "clumps_only yes rigid_clumps yes visc 1", tmp_path / "data", comm="comm_modify cutoff 12")
+    text = lmp(tmp_path, input_lines(spheres, "clumps_only yes rigid_clumps yes visc 1", tmp_path / "data",
+                                     comm="comm_modify cutoff 12")
                + ["timer full", "run 0"], ranks=2).log
     assert text.count("Rigid clumps, shape") == 1500
 
@@ -62,13 +71,15 @@ def test_clumps_that_all_differ_are_told_apart_in_little_time(tmp_path):
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_stiffly_bonded_clumps_that_migrate_make_no_new_shapes(tmp_path, ranks):
     """Pairs held by stiff springs that breathe by less than the tolerance, in a flow through a periodic box."""
-    spheres = Spheres([(k % 2 * 2.0 - 5, 4.0 * (k // 2) - 6, 0) for k in range(8)], 1.0, (2.0, 0.3, 0), np.arange(8) // 2 + 1,
-                      bonds=[(k, k + 1) for k in (1, 3, 5, 7)])
-    lines = input_lines(spheres, "clumps_only yes rigid_clumps yes visc 0.1 shell 12 fluid_velocity 2 0.3 0 add_force yes", tmp_path / "data",
+    spheres = Spheres([(k % 2 * 2.0 - 5, 4.0 * (k // 2) - 6, 0) for k in range(8)], 1.0, (2.0, 0.3, 0),
+                      np.arange(8) // 2 + 1, bonds=[(k, k + 1) for k in (1, 3, 5, 7)])
+    lines = input_lines(spheres, "clumps_only yes rigid_clumps yes visc 0.1 shell 12 fluid_velocity 2 0.3 "
+                                 "0 add_force yes", tmp_path / "data",
                         boundary="p p p", box=[(-8.0, 8.0)] * 3, comm="comm_modify cutoff 6", dt=2e-3)
     at = lines.index("bond_style zero")
     lines[at:at + 2] = ["bond_style harmonic", "bond_coeff 1 1e4 2.0001"]
-    text = lmp(tmp_path, lines + ["special_bonds lj/coul 0 1 1", "fix nve all nve/sphere", "run 2000", "run 2000"], ranks=ranks).log
+    text = lmp(tmp_path, lines + ["special_bonds lj/coul 0 1 1", "fix nve all nve/sphere", "run 2000", "run 2000"],
+               ranks=ranks).log
     assert text.count("Rigid clumps, shape") == 1
 
 
@@ -77,7 +88,8 @@ def test_shapes_that_nobody_has_are_dropped(tmp_path):
     spheres, _ = many("square", 2)
     lines = input_lines(spheres, "clumps_only yes rigid_clumps yes shell 12 visc 1", tmp_path / "data", comm=WIDE)
     pull, back = "displace_atoms corner move 0 0 0.3", "displace_atoms corner move 0 0 -0.3"
-    text = lmp(tmp_path, lines + ["run 0", "group corner id 8", pull, "run 0", "run 0", back, "run 0", pull, "run 0"], ranks=2).log
+    text = lmp(tmp_path, lines + ["run 0", "group corner id 8", pull, "run 0", "run 0", back, "run 0", pull, "run 0"],
+               ranks=2).log
     assert re.findall("Rigid clumps, shape ([0-9]+)", text) == ["1", "2", "3"]
 
 
@@ -89,7 +101,8 @@ def fresh(simulation, spheres, style, **options):
 
 @pytest.mark.hard_case("run after an error of rigid clumps")
 def test_run_after_spheres_at_one_point(simulation):
-    spheres = Spheres([(0, 0, 0), (2, 0, 0), (0, 2, 0), (20, 0, 0), (22, 0, 0), (20, 2, 0)], 1.0, (0.3, 0.1, 0), [1, 1, 1, 2, 2, 2])
+    spheres = Spheres([(0, 0, 0), (2, 0, 0), (0, 2, 0), (20, 0, 0), (22, 0, 0), (20, 2, 0)], 1.0, (0.3, 0.1, 0),
+                      [1, 1, 1, 2, 2, 2])
     style = "clumps_only yes rigid_clumps yes shell 12 visc 1"
     expected = fresh(simulation, spheres, style)
     sim = simulation(spheres, style, comm=WIDE)
@@ -167,14 +180,16 @@ def test_negative_molecule_is_a_molecule(simulation, molecule):
 def test_clump_that_bends_is_an_error_that_names_the_molecule(tmp_path, ranks):
     spheres, _ = many("square", 3)
     lines = input_lines(spheres, "clumps_only yes rigid_clumps yes visc 1.3", tmp_path / "data", comm=WIDE, dt=1e-3)
-    ended = lmp(tmp_path, lines + ["fix nve all nve/sphere", "velocity all create 1.0 4711", "run 200"], ranks=ranks, succeed=False)
+    ended = lmp(tmp_path, lines + ["fix nve all nve/sphere", "velocity all create 1.0 4711", "run 200"], ranks=ranks,
+                succeed=False)
     assert "keyword rigid_clumps: the clump of molecule" in ended.text
     assert "is not rigid" in ended.text
 
 
 @pytest.mark.hard_case("rigid_clumps auto: clump that bends")
 def test_auto_solves_bent_clumps_anew(simulation):
-    """Loose spheres with drag: every clump soon loses its shape. The force is the model's for the velocities of the half step."""
+    """Loose spheres with drag: every clump soon loses its shape. The force is the model's for the velocities of the
+    half step."""
     spheres, omega = many("square", 3)
     sim = simulation(spheres, f"clumps_only yes visc 1.3 rigid_clumps auto {SOLVED}", comm=WIDE, dt=1e-3)
     sim.command("fix nve all nve/sphere")
@@ -208,8 +223,8 @@ def test_a_clump_that_leaves_a_box_with_fixed_faces_is_told_to_have_left_it(tmp_
     """One sphere is outside, and LAMMPS has deleted it; it looks for lost atoms only when it writes thermo output."""
     spheres = Spheres([(0, 3, 0), (2, 3, 0)], 1.0, (3.0, 0.0, 0.0), molecule=1)
     drag = ["fix drag all stokes_dynamics"] if "nve" in fix else []
-    lines = input_lines(spheres, "clumps_only yes rigid_clumps yes shell 42 visc 1e-3 fluid_velocity 3 0 0", tmp_path / "data",
-                        box=[(-10, 10)] * 3, fix=False, dt=0.05)
+    lines = input_lines(spheres, "clumps_only yes rigid_clumps yes shell 42 visc 1e-3 fluid_velocity 3 0 0",
+                        tmp_path / "data", box=[(-10, 10)] * 3, fix=False, dt=0.05)
     ended = lmp(tmp_path, lines + drag + [fix, "thermo 100", "run 100"], ranks, succeed=False)
     text = " ".join(ended.text.split())
     assert ended.code != 0 and "the clump of molecule 1 has lost atoms that left the box: use boundary m or s" in text
@@ -250,17 +265,20 @@ def flexible(count):
 
 
 def bending(tmp_path, spheres):
-    lines = input_lines(spheres, f"clumps_only yes rigid_clumps auto shell 12 visc 0.7 add_force yes {SOLVED}", tmp_path / "data", comm=WIDE, dt=0.01)
+    lines = input_lines(spheres, f"clumps_only yes rigid_clumps auto shell 12 visc 0.7 add_force yes {SOLVED}",
+                        tmp_path / "data", comm=WIDE, dt=0.01)
     at = lines.index("bond_style zero")
     lines[at:at + 2] = ["bond_style harmonic", "bond_coeff 1 5 2.3"]
-    return lines + ["group rigid id 4:6", "group soft subtract all rigid", "special_bonds lj/coul 0 1 1", "fix down all addforce 3.0 1.0 -2.0",
-                    "fix rigid rigid rigid/small molecule", "fix nve soft nve/sphere"]
+    return lines + ["group rigid id 4:6", "group soft subtract all rigid", "special_bonds lj/coul 0 1 1",
+                    "fix down all addforce 3.0 1.0 -2.0", "fix rigid rigid rigid/small molecule",
+                    "fix nve soft nve/sphere"]
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_auto_run_cut_in_pieces_is_the_same_run(tmp_path, ranks):
     spheres = flexible(3)
-    inputs = [bending(tmp_path, spheres) + dump_lines(tmp_path / f"dump.{pieces}", every=40, columns="xu yu zu vx vy vz f_drag[1]")
+    inputs = [bending(tmp_path, spheres) + dump_lines(tmp_path / f"dump.{pieces}", every=40,
+                                                      columns="xu yu zu vx vy vz f_drag[1]")
               + [f"run {40 // pieces}"] * pieces for pieces in (1, 2, 4)]
     shapes = [log.count("Rigid clumps, shape") for log in lmp_in_turn(tmp_path, inputs, ranks)]
     frames = [read_dump(tmp_path / f"dump.{pieces}")[-1] for pieces in (1, 2, 4)]
@@ -274,10 +292,12 @@ def test_auto_restart_knows_who_is_loose(tmp_path):
     spheres = flexible(3)
     spheres.molecule[:3] = -9
     columns = "xu yu zu vx vy vz f_drag[1]"
-    lmp(tmp_path, bending(tmp_path, spheres) + [f"restart 20 {tmp_path}/restart"] + dump_lines(tmp_path / "whole", every=40, columns=columns) + ["run 40"])
+    lmp(tmp_path, bending(tmp_path, spheres) + [f"restart 20 {tmp_path}/restart"] +
+        dump_lines(tmp_path / "whole", every=40, columns=columns) + ["run 40"])
     lines = bending(tmp_path, spheres)
     after = lines[lines.index("group rigid id 4:6") + 2:]
-    text = lmp(tmp_path, ["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/restart.20", WIDE, "fix drag all stokes_dynamics"] + after
+    text = lmp(tmp_path, ["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/restart.20", WIDE,
+                          "fix drag all stokes_dynamics"] + after
                + dump_lines(tmp_path / "rest", every=40, columns=columns) + ["run 20"], ranks=2).log
     assert text.count("Rigid clumps, shape") == 1
     whole, rest = read_dump(tmp_path / "whole")[-1][1], read_dump(tmp_path / "rest")[-1][1]
@@ -289,7 +309,8 @@ def test_bent_clump_does_not_hide_one_that_is_split(simulation):
     spheres, _ = many("square", 2)
     spheres.v[4:] = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 1)]
     sim = simulation(spheres, f"clumps_only yes rigid_clumps auto visc 1.3 {SOLVED} region r", comm=WIDE, dt=1e-2,
-                     before_pair="region r block {} 100 -100 100 -100 100".format(np.sort(spheres.x[:4, 0])[1:3].mean() - 1.0))
+                     before_pair="region r block {} 100 -100 100 -100 100".format(
+                         np.sort(spheres.x[:4, 0])[1:3].mean() - 1.0))
     spheres.v[:4] = 0.0
     with pytest.raises(Exception, match="molecule 3 is split"):
         sim.commands("velocity all set -1 0 0 sum yes\nfix nve all nve/sphere").run(400)
@@ -310,10 +331,12 @@ def test_many_clumps_that_lose_atoms_at_once_are_no_recursion(simulation, many_l
 @pytest.mark.parametrize("far", [1e6, 1e20])
 def test_positions_far_out_of_a_periodic_box_end_in_an_error(tmp_path, far):
     spheres, _ = many("square", 2, spacing=8.0)
-    lines = input_lines(spheres, f"clumps_only yes rigid_clumps auto visc 1.3 {SOLVED}", tmp_path / "data", boundary="p p p",
-                        box=[(-9.0, 15.0), (-9.0, 9.0), (-9.0, 9.0)], comm="comm_modify cutoff 6", dt=1e-3)
-    ended = lmp(tmp_path, lines + ["neigh_modify every 1 delay 0 check yes", "fix nve all nve/sphere", "velocity all create 1.0 4711", "run 100",
-                                   f"velocity all scale {far * far}", "timestep 1.0", "run 100"], succeed=False)
+    lines = input_lines(spheres, f"clumps_only yes rigid_clumps auto visc 1.3 {SOLVED}", tmp_path / "data",
+                        boundary="p p p", box=[(-9.0, 15.0), (-9.0, 9.0), (-9.0, 9.0)], comm="comm_modify cutoff 6",
+                        dt=1e-3)
+    ended = lmp(tmp_path, lines + ["neigh_modify every 1 delay 0 check yes", "fix nve all nve/sphere",
+                                   "velocity all create 1.0 4711", "run 100", f"velocity all scale {far * far}",
+                                   "timestep 1.0", "run 100"], succeed=False)
     assert "ERROR" in ended.text
 
 
@@ -327,7 +350,8 @@ def test_split_clump_is_an_error(simulation, how):
 
 
 @pytest.mark.parametrize("words, message", [
-    ("cut_off_distance inf rigid_clumps yes", "keyword rigid_clumps: with clumps_only no, rotation yes .or a shell. is required"),
+    ("cut_off_distance inf rigid_clumps yes",
+     "keyword rigid_clumps: with clumps_only no, rotation yes .or a shell. is required"),
     ("clumps_only yes cut_off_distance 5 rigid_clumps yes", "keyword rigid_clumps: no cut_off_distance may be given"),
     ("clumps_only yes rigid_clumps maybe", "keyword rigid_clumps: 'maybe' is none of: no, yes, auto"),
     ("clumps_only yes rigid_clumps yes shell 7", "keyword shell: '7' must be 1 or >= 12"),
@@ -343,12 +367,14 @@ def test_bad_input(simulation, words, message):
 @pytest.mark.hard_case("rigid clump with equal spheres at one point")
 def test_spheres_at_one_point_are_an_error(simulation):
     with pytest.raises(Exception, match="two of its spheres of equal radius are at one point"):
-        simulation(Spheres([[0, 0, 0], [0, 0, 0], [1, 0, 0]], molecule=1), "clumps_only yes rigid_clumps yes visc 1").run(0)
+        simulation(Spheres([[0, 0, 0], [0, 0, 0], [1, 0, 0]], molecule=1),
+                   "clumps_only yes rigid_clumps yes visc 1").run(0)
 
 
 def test_a_resistance_too_large_for_memory_is_an_error_before_anything_is_allocated(simulation):
     with pytest.raises(Exception, match="needs .* GB, more than 4; use a smaller shell"):
-        simulation(Spheres(CLUSTERS["fcc13"], molecule=1), "clumps_only yes rigid_clumps yes shell 100000000 visc 1", comm=WIDE).run(0)
+        simulation(Spheres(CLUSTERS["fcc13"], molecule=1), "clumps_only yes rigid_clumps yes shell 100000000 visc 1",
+                   comm=WIDE).run(0)
 
 
 def test_a_clump_longer_than_the_ghost_cut_off_is_solved_on_one_rank(tmp_path):
@@ -356,6 +382,7 @@ def test_a_clump_longer_than_the_ghost_cut_off_is_solved_on_one_rank(tmp_path):
     forces = []
     for ranks in (1, 2):
         lmp(tmp_path, input_lines(spheres, "clumps_only yes rigid_clumps yes visc 1", tmp_path / "data")
-            + ["velocity all set 0.1 0.2 0.3", *dump_lines(tmp_path / "dump", columns="f_drag[1] f_drag[2] f_drag[3]"), "run 0"], ranks=ranks)
+            + ["velocity all set 0.1 0.2 0.3", *dump_lines(tmp_path / "dump", columns="f_drag[1] f_drag[2] f_drag[3]"),
+               "run 0"], ranks=ranks)
         forces.append(read_dump(tmp_path / "dump")[0][1])
     assert np.abs(forces[0]).max() > 1 and np.abs(forces[1] - forces[0]).max() < 1e-10

@@ -26,7 +26,8 @@ def tabulated(name, kind):
 
 
 def rigid_motion(x, mode):
-    """Velocities and angular velocities of spheres in unit translation (mode 0-2) or rotation (3-5) about their centroid."""
+    """Velocities and angular velocities of spheres in unit translation (mode 0-2) or rotation (3-5) about their
+    centroid."""
     U, W = np.zeros(3), np.zeros(3)
     (U if mode < 3 else W)[mode % 3] = 1.0
     return U + np.cross(W, x - x.mean(axis=0)), np.broadcast_to(W, x.shape)
@@ -84,7 +85,8 @@ def test_lone_sphere_spins_against_its_torque(simulation):
 
 def random_scene(seed=3, n=12):
     rng = np.random.default_rng(seed)
-    return (Spheres(rng.uniform(0, 6, (n, 3)), rng.uniform(0.3, 1.2, n), rng.normal(size=(n, 3))), rng.normal(size=(n, 3)))
+    return (Spheres(rng.uniform(0, 6, (n, 3)), rng.uniform(0.3, 1.2, n), rng.normal(size=(n, 3))),
+            rng.normal(size=(n, 3)))
 
 
 def test_torque_reaches_the_atoms_either_way(simulation):
@@ -116,8 +118,8 @@ def test_what_rotates_with_the_fluid_feels_only_its_strain(simulation, scene):
     formulas = "\n".join(f"variable {n} atom {w}" for n, w in zip(
         ("gx", "gy", "gz"), (f"{spin[1]}*z-{spin[2]}*y", f"{spin[2]}*x-{spin[0]}*z", f"{spin[0]}*y-{spin[1]}*x")))
     spheres.v = np.cross(spin, spheres.x)
-    sim = simulation(spheres, f"{scene} visc 1.3 rotation yes {EXACT} fluid_velocity v_gx v_gy v_gz", before_pair=formulas,
-                     comm="comm_modify cutoff 40")
+    sim = simulation(spheres, f"{scene} visc 1.3 rotation yes {EXACT} fluid_velocity v_gx v_gy v_gz",
+                     before_pair=formulas, comm="comm_modify cutoff 40")
     sim.raw("omega")[:] = spin
     sim.run(0)
     free = 6 * np.pi * 1.3
@@ -130,7 +132,8 @@ def test_vorticity_given_equals_vorticity_of_the_formulas(simulation):
     vorticity = [G[2, 1] - G[1, 2], G[0, 2] - G[2, 0], G[1, 0] - G[0, 1]]
     answers = []
     for extra in ("", "fluid_vorticity {} {} {}".format(*vorticity)):
-        sim = simulation(spheres, f"cut_off_distance inf visc 1.3 rotation yes {EXACT} fluid_velocity v_gx v_gy v_gz {extra}",
+        sim = simulation(spheres,
+                         f"cut_off_distance inf visc 1.3 rotation yes {EXACT} fluid_velocity v_gx v_gy v_gz {extra}",
                          before_pair=FLOW)
         sim.raw("omega")[:] = w[sim.ids() - 1]
         before = sim.x
@@ -142,7 +145,8 @@ def test_vorticity_given_equals_vorticity_of_the_formulas(simulation):
 
 def test_bead_in_shear_rotates_with_half_the_vorticity(simulation):
     """Free sphere, no torque: its torque is 8 pi eta a^3 (w_inf - W)."""
-    sim = simulation(Spheres([[0.5, 0.2, 2.0]], 0.7), "cut_off_distance inf visc 1.3 rotation yes fluid_velocity v_ux 0 0",
+    sim = simulation(Spheres([[0.5, 0.2, 2.0]], 0.7),
+                     "cut_off_distance inf visc 1.3 rotation yes fluid_velocity v_ux 0 0",
                      before_pair="variable ux atom 0.9*z")
     sim.run(0)
     assert torques(sim)[0] == pytest.approx(8 * np.pi * 1.3 * 0.343 * np.array([0, 0.45, 0]), abs=1e-13)
@@ -156,9 +160,10 @@ def test_ranks_agree_also_with_rotation(tmp_path, ranks):
     for scene in ("cut_off_distance inf", "clumps_only yes"):
         last = []
         for np_ in (1, ranks):
-            lines = input_lines(spheres, f"{scene} visc 1.3 rotation yes {EXACT} update_every 3", tmp_path / "data", dt=1e-4,
-                                comm="comm_modify cutoff 30")
-            lines += ["fix nve all nve/sphere"] + dump_lines(tmp_path / "dump", every=7, columns="x y z omegax omegay omegaz "
+            lines = input_lines(spheres, f"{scene} visc 1.3 rotation yes {EXACT} update_every 3", tmp_path / "data",
+                                dt=1e-4, comm="comm_modify cutoff 30")
+            lines += ["fix nve all nve/sphere"] + dump_lines(tmp_path / "dump", every=7,
+                                                             columns="x y z omegax omegay omegaz "
                                                              "f_drag[7] f_drag[8] f_drag[9]") + ["run 7"]
             lmp(tmp_path, lines, ranks=np_)
             last.append(read_dump(tmp_path / "dump")[-1][1])
@@ -168,12 +173,14 @@ def test_ranks_agree_also_with_rotation(tmp_path, ranks):
 
 def test_restart_goes_on_as_the_unbroken_run(tmp_path):
     spheres, _ = random_scene()
-    lines = input_lines(spheres, f"cut_off_distance inf visc 1.3 rotation yes {EXACT} update_every 4", tmp_path / "data", dt=1e-4)
+    lines = input_lines(spheres, f"cut_off_distance inf visc 1.3 rotation yes {EXACT} update_every 4",
+                        tmp_path / "data", dt=1e-4)
     columns = "x y z omegax omegay omegaz f_drag[7] f_drag[8] f_drag[9]"
     lmp(tmp_path, lines + ["fix nve all nve/sphere", f"restart 10 {tmp_path}/restart"]
         + dump_lines(tmp_path / "whole", every=20, columns=columns) + ["run 20"])
-    lmp(tmp_path, ["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/restart.10", "fix drag all stokes_dynamics",
-                   "fix nve all nve/sphere"] + dump_lines(tmp_path / "rest", every=20, columns=columns) + ["run 10"])
+    lmp(tmp_path, ["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/restart.10",
+                   "fix drag all stokes_dynamics", "fix nve all nve/sphere"] +
+        dump_lines(tmp_path / "rest", every=20, columns=columns) + ["run 10"])
     whole, rest = read_dump(tmp_path / "whole")[-1][1], read_dump(tmp_path / "rest")[-1][1]
     assert np.abs(whole - rest).max() < 1e-10 * np.abs(whole).max()
 

@@ -38,13 +38,15 @@ def test_spheres_outside_the_region_neither_feel_nor_act(simulation, mode, k):
 @pytest.mark.hard_case("region border through a clump, 1 and 2 ranks")
 @pytest.mark.parametrize("mode", MODES)
 def test_region_border_through_a_clump_on_two_ranks(tmp_path, mode):
-    """The third sphere is the last inside. The ranks meet between the second and the third, or the third and the fourth."""
+    """The third sphere is the last inside. The ranks meet between the second and the third, or the third and the
+    fourth."""
     for shift in (0.0, 1.0):
         folder = tmp_path / str(shift)
         folder.mkdir()
         middle = 2 * A * (1.5 + shift)
-        lines = input_lines(row_of_five(), f"{MODES[mode]} {EXACT} region part", folder / "data", comm="comm_modify cutoff 12",
-                            before_pair=lower(3), box=[(-2, 2), (-2, 2), (middle - 9, middle + 9)])
+        lines = input_lines(row_of_five(), f"{MODES[mode]} {EXACT} region part", folder / "data",
+                            comm="comm_modify cutoff 12", before_pair=lower(3),
+                            box=[(-2, 2), (-2, 2), (middle - 9, middle + 9)])
         lmp(folder, lines + dump_lines(folder / "dump") + ["run 1"], ranks=2)
         F = read_dump(folder / "dump")[0][1][:, 6:]
         assert np.abs(F[3:]).max() == 0.0
@@ -77,15 +79,15 @@ def test_spheres_outside_may_have_any_radius(simulation):
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("algorithm", [1, 2])
 def test_nobody_selected_is_no_error(simulation, mode, algorithm):
-    sim = simulation(row_of_five(), f"{MODES[mode]} visc {ETA} algorithm {algorithm} group nobody", comm="comm_modify cutoff 12",
-                     before_pair="group nobody id 77").run(2)
+    sim = simulation(row_of_five(), f"{MODES[mode]} visc {ETA} algorithm {algorithm} group nobody",
+                     comm="comm_modify cutoff 12", before_pair="group nobody id 77").run(2)
     assert np.abs(sim.fix_rows()).max() == 0.0 and sim.iterations == 0
 
 
 @pytest.mark.parametrize("mode", MODES)
 def test_nobody_selected_on_two_ranks_is_no_error(tmp_path, mode):
-    lines = input_lines(row_of_five(), f"{MODES[mode]} {EXACT} group nobody", tmp_path / "data", comm="comm_modify cutoff 12",
-                        before_pair="group nobody id 77")
+    lines = input_lines(row_of_five(), f"{MODES[mode]} {EXACT} group nobody", tmp_path / "data",
+                        comm="comm_modify cutoff 12", before_pair="group nobody id 77")
     lmp(tmp_path, lines + dump_lines(tmp_path / "dump") + ["run 1"], ranks=2)
     assert np.abs(read_dump(tmp_path / "dump")[-1][1][:, 6:]).max() == 0.0
 
@@ -122,7 +124,8 @@ def test_a_group_that_changes_between_runs(simulation, mode, options):
 def test_a_dynamic_group_is_found_before_the_first_force(simulation, mode, group):
     """LAMMPS itself finds it after the first forces of a run; so do those of the next run after spheres were moved."""
     before = f"{lower(3)}\nvariable low atom z<{2 * A * 2.5}\ngroup part dynamic all {group} every 1"
-    sim = simulation(row_of_five(), f"{MODES[mode]} {EXACT} group part", comm="comm_modify cutoff 12", before_pair=before).run(0)
+    sim = simulation(row_of_five(), f"{MODES[mode]} {EXACT} group part", comm="comm_modify cutoff 12",
+                     before_pair=before).run(0)
     for k in (3, 4):
         assert np.abs(sim.fix_rows()[k:]).max() == 0.0
         assert -sim.drag[:, 2].sum() / (STOKES * U) == pytest.approx(ROW[k], rel=1e-9)
@@ -136,8 +139,8 @@ def test_spheres_enter_and_leave_the_region_during_a_run(simulation, mode, updat
     """Free flight through a slab. Whoever comes or goes is in the very next force, whatever update_every."""
     x = [(0, 0, 0), (1.6, 0, 1.4), (3.2, 0, 2.6), (0, 1.8, 0.4), (1.8, 1.8, 3.1)]
     spheres = Spheres(x, A, (0, 0, U), molecule=1)
-    sim = simulation(spheres, f"{MODES[mode]} {EXACT} {selected} update_every {update_every}", comm="comm_modify cutoff 12",
-                     box=[(-9, 9), (-9, 9), (-9, 15)],
+    sim = simulation(spheres, f"{MODES[mode]} {EXACT} {selected} update_every {update_every}",
+                     comm="comm_modify cutoff 12", box=[(-9, 9), (-9, 9), (-9, 15)],
                      before_pair="region slab block INF INF INF INF 1.0 3.0\nneigh_modify every 1 delay 0\n"
                                  "group inside dynamic all region slab every 1", dt=0.05)
     sim.commands(["unfix drag", "fix drag all stokes_dynamics apply no", "fix move all nve/sphere"])
@@ -163,8 +166,8 @@ def per_rank_megabytes(log):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_bystanders_are_not_in_the_list(tmp_path, ranks):
-    """Every 50th of 8000 spheres is in the group: its forces are those without the others, and the list of pairs, 150 of 200
-    neighbours a sphere for all, is not what the run takes memory for."""
+    """Every 50th of 8000 spheres is in the group: its forces are those without the others, and the list of pairs, 150
+    of 200 neighbours a sphere for all, is not what the run takes memory for."""
     side = 20
     x = 2.2 * A * np.stack(np.meshgrid(*3 * [np.arange(side)], indexing="ij"), axis=-1).reshape(-1, 3)
     rng = np.random.default_rng(4)
@@ -189,8 +192,8 @@ def test_bystanders_are_not_in_the_list(tmp_path, ranks):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_newcomers_between_two_re_neighbourings(tmp_path, ranks):
-    """Spheres fly into a region under a wide skin; nobody re-neighbours for 40 steps. The forces are those of a list that is
-    made afresh in every step."""
+    """Spheres fly into a region under a wide skin; nobody re-neighbours for 40 steps. The forces are those of a list
+    that is made afresh in every step."""
     rng = np.random.default_rng(6)
     x = 2.4 * A * np.stack(np.meshgrid(*3 * [np.arange(5)], indexing="ij"), axis=-1).reshape(-1, 3)
     spheres = Spheres(x, A, rng.uniform(-0.5, 0.5, x.shape))
@@ -199,7 +202,8 @@ def test_newcomers_between_two_re_neighbourings(tmp_path, ranks):
         folder = tmp_path / name
         folder.mkdir()
         lines = input_lines(spheres, f"cut_off_distance 3.1 taper wendland {EXACT} region slab", folder / "data",
-                            box=[(-4.0, 11.0)] * 3, before_pair=f"region slab block INF INF INF INF 0.2 3.2\nneighbor {skin} bin\n"
+                            box=[(-4.0, 11.0)] * 3, before_pair="region slab block INF INF INF INF 0.2 3.2\n"
+                            f"neighbor {skin} bin\n"
                             f"neigh_modify {neigh}\ncomm_modify cutoff 7", dt=0.02)
         lines += ["unfix drag", "fix drag all stokes_dynamics apply no", "fix move all nve/sphere"]
         lmp(folder, lines + dump_lines(folder / "dump") + ["run 60"], ranks=ranks)
@@ -211,26 +215,30 @@ def test_newcomers_between_two_re_neighbourings(tmp_path, ranks):
 
 
 def test_list_made_while_two_spheres_are_apart(tmp_path):
-    """Two spheres swing by 0.9 about places 5.8 apart, less than half the skin of 2 each. A third joins in step 10, when they are
-    7.6 apart; in step 25 they come by at 4.53 and see each other, by a cut-off of 5, though LAMMPS has not re-neighboured."""
+    """Two spheres swing by 0.9 about places 5.8 apart, less than half the skin of 2 each. A third joins in step 10,
+    when they are 7.6 apart; in step 25 they come by at 4.53 and see each other, by a cut-off of 5, though LAMMPS has
+    not re-neighboured."""
     spheres = Spheres([(0, 0, 0), (5.8, 0, 0), (3, 8, -0.3)], A, [(0, 0, 0.3), (0, 0.2, 0), (0, 0, 0)])
-    lines = input_lines(spheres, f"cut_off_distance 5 {EXACT} region above", tmp_path / "data", box=[(-12.0, 18.0)] * 3, dt=0.1,
-                        before_pair="region above block INF INF INF INF -0.01 INF\nneighbor 2 bin\nneigh_modify every 1 delay 0 check yes\ncomm_modify cutoff 9")
-    lines += ["unfix drag", "fix drag all stokes_dynamics apply no", "group one id 1", "group two id 2", "group three id 3",
-              "fix a one move wiggle -0.9 0 0 4", "fix b two move wiggle 0.9 0 0 4", "fix c three move linear 0 0 0.3"]
+    lines = input_lines(spheres, f"cut_off_distance 5 {EXACT} region above", tmp_path / "data", box=[(-12.0, 18.0)] * 3,
+                        dt=0.1, before_pair="region above block INF INF INF INF -0.01 INF\nneighbor 2 bin\n"
+                                            "neigh_modify every 1 delay 0 check yes\ncomm_modify cutoff 9")
+    lines += ["unfix drag", "fix drag all stokes_dynamics apply no", "group one id 1", "group two id 2",
+              "group three id 3", "fix a one move wiggle -0.9 0 0 4", "fix b two move wiggle 0.9 0 0 4",
+              "fix c three move linear 0 0 0.3"]
     log = lmp(tmp_path, lines + dump_lines(tmp_path / "dump") + ["run 25"]).log
     rows = read_dump(tmp_path / "dump")[-1][1]
     assert "Neighbor list builds = 0" in log
     assert rows[1, 0] - rows[0, 0] == pytest.approx(4.53, abs=0.01)
     sees = np.array([[0, 1, 0], [1, 0, 0], [0, 0, 0]], bool)
-    assert largest_difference(rows[:, 6:9], model.forces(Spheres(rows[:, 0:3], A, rows[:, 3:6]), ETA, sees=sees)) < 1e-10
+    assert largest_difference(rows[:, 6:9], model.forces(Spheres(rows[:, 0:3], A, rows[:, 3:6]), ETA,
+                                                         sees=sees)) < 1e-10
 
 
 def test_rigid_clump_that_leaves_the_region_keeps_nothing(simulation):
     spheres = row_of_five()
     spheres.molecule[:] = (1, 1, 1, 3, 3)
-    sim = simulation(spheres, f"clumps_only yes rigid_clumps yes rotation yes {EXACT} region slab", comm="comm_modify cutoff 12",
-                     before_pair="variable gone equal -100*(step>1)\n"
+    sim = simulation(spheres, f"clumps_only yes rigid_clumps yes rotation yes {EXACT} region slab",
+                     comm="comm_modify cutoff 12", before_pair="variable gone equal -100*(step>1)\n"
                                  "region slab block INF INF INF INF INF 20 move NULL NULL v_gone")
     sim.run(1)
     assert np.abs(sim.fix_rows()[:, [2, 5]]).min() > 0.0    # F z, v' z
@@ -242,7 +250,8 @@ def test_another_pair_style_with_another_group_clears_the_rows(simulation):
     """Both have made one selection: the second one's is not taken for the first one's."""
     sim = simulation(row_of_five(), f"cut_off_distance inf {EXACT}", before_pair="group part id 1:2").run()
     assert np.abs(sim.fix_rows()[:, 2]).min() > 0.0
-    sim.commands(["pair_style none", f"pair_style stokes_dynamics cut_off_distance inf {EXACT} group part", "pair_coeff * *"]).run()
+    sim.commands(["pair_style none", f"pair_style stokes_dynamics cut_off_distance inf {EXACT} group part",
+                  "pair_coeff * *"]).run()
     assert np.abs(sim.fix_rows()[2:]).max() == 0.0
     assert -sim.fix_rows()[:, 2].sum() / (STOKES * U) == pytest.approx(ROW[2], rel=1e-9)
 
@@ -252,7 +261,8 @@ def test_region_that_moves(simulation, mode):
     spheres = row_of_five()
     spheres.v[:] = (0, 0, U)
     sim = simulation(spheres, f"{MODES[mode]} {EXACT} region slab", comm="comm_modify cutoff 12", dt=0.1,
-                     before_pair="variable up equal 0.1*step\nregion slab block INF INF INF INF -0.5 2.5 move NULL NULL v_up")
+                     before_pair="variable up equal 0.1*step\n"
+                                 "region slab block INF INF INF INF -0.5 2.5 move NULL NULL v_up")
     # Nothing integrates: the spheres stay, the region rises.
     counts = set()
     for step in range(60):
@@ -268,7 +278,7 @@ def test_region_that_moves(simulation, mode):
     assert counts == {1, 2, 3}
 
 
-# --- where LAMMPS keeps an atom, and when it looks ----------------------------------------------------------------------------
+# --- where LAMMPS keeps an atom, and when it looks --------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("mode", MODES)
@@ -276,8 +286,10 @@ def test_a_sphere_beyond_a_periodic_face_is_where_its_image_is(simulation, mode)
     """LAMMPS wraps it when it re-neighbours, which is not in this run."""
     far = MODES[mode].replace("inf", "4.5")    # sums over a periodic box are not what this is about
     spheres = Spheres([(9.95, 3, 5), (5.0, 5, 2), (0.05, 6, 5)], A, [(1, 0, 0), (0, 1, 0), (-1, 0, 0)])
-    sim = simulation(spheres, f"{far} {EXACT} region left", boundary="p p p", box=[(0.0, 10.0)] * 3, dt=0.1, comm="comm_modify cutoff 5",
-                     before_pair="region left block 0 5.5 INF INF INF INF\nneighbor 2 bin\nneigh_modify delay 1000 every 1000 check no")
+    sim = simulation(spheres, f"{far} {EXACT} region left", boundary="p p p", box=[(0.0, 10.0)] * 3, dt=0.1,
+                     comm="comm_modify cutoff 5",
+                     before_pair="region left block 0 5.5 INF INF INF INF\nneighbor 2 bin\n"
+                                 "neigh_modify delay 1000 every 1000 check no")
     sim.commands(["unfix drag", "fix drag all stokes_dynamics apply no", "fix move all nve/sphere"])
     for step, inside in ((0, [1, 2]), (1, [0, 1])):
         sim.run(step)
@@ -287,8 +299,9 @@ def test_a_sphere_beyond_a_periodic_face_is_where_its_image_is(simulation, mode)
 
 def grouped(simulation, runs, every=1, steps="1"):
     """A sphere goes down across z = 6 in step 3; fz of every step, by the group that LAMMPS itself fills"""
-    sim = simulation(Spheres([(6, 6, 6.025), (8, 6, 3)], A, (0, 0, -1)), f"cut_off_distance inf {EXACT} group low", box=[(0, 12)] * 3, dt=0.01,
-                     before_pair=f"region low block INF INF INF INF INF 6\ngroup low dynamic all region low every {every}")
+    sim = simulation(Spheres([(6, 6, 6.025), (8, 6, 3)], A, (0, 0, -1)), f"cut_off_distance inf {EXACT} group low",
+                     box=[(0, 12)] * 3, dt=0.01, before_pair="region low block INF INF INF INF INF 6\n"
+                                                             f"group low dynamic all region low every {every}")
     sim.commands(["unfix drag", "fix drag all stokes_dynamics apply no", "fix down all move linear 0 0 -1"])
     forces = []
     for n in runs:
@@ -307,8 +320,9 @@ def test_a_dynamic_group_is_that_of_the_step(simulation, runs):
 
 def test_a_dynamic_group_has_those_that_a_periodic_face_brings(simulation):
     """In the step in which LAMMPS wraps it, a sphere is in the region at the other side."""
-    sim = simulation(Spheres([(3, 3, 9.995)], A, (0, 0, 1)), f"clumps_only yes {EXACT} group bottom", boundary="p p p", box=[(0.0, 10.0)] * 3,
-                     dt=0.01, before_pair="neigh_modify delay 0 every 1 check no\nregion bottom block INF INF INF INF 0 1\n"
+    sim = simulation(Spheres([(3, 3, 9.995)], A, (0, 0, 1)), f"clumps_only yes {EXACT} group bottom", boundary="p p p",
+                     box=[(0.0, 10.0)] * 3, dt=0.01, before_pair="neigh_modify delay 0 every 1 check no\n"
+                                          "region bottom block INF INF INF INF 0 1\n"
                                           "group bottom dynamic all region bottom every 1")
     sim.commands(["unfix drag", "fix drag all stokes_dynamics apply no", "fix move all nve/sphere"]).run(1)
     assert sim.x[0, 2] < 0.01 and sim.drag[0, 2] == pytest.approx(-STOKES, rel=1e-9)

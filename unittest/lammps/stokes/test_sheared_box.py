@@ -1,5 +1,5 @@
-"""A box that fix deform changes: the flow that takes it along (fluid_velocity box), spheres that cross its faces without inertia,
-which remap goes with which motion."""
+"""A box that fix deform changes: the flow that takes it along (fluid_velocity box), spheres that cross its faces
+without inertia, which remap goes with which motion."""
 import numpy as np
 import pytest
 
@@ -18,7 +18,8 @@ def edges(sim):
     return np.array([[lx, xy, xz], [0, ly, yz], [0, 0, lz]]), np.array(lo)
 
 
-STYLES = {"shear": "xy erate 0.7", "two shears": "xz vel 2.1 yz erate -0.3", "extension": "x erate 0.4 y erate -0.2 z vel 0.8",
+STYLES = {"shear": "xy erate 0.7", "two shears": "xz vel 2.1 yz erate -0.3",
+          "extension": "x erate 0.4 y erate -0.2 z vel 0.8",
           "final": "x final -4 9 xy final 2.5", "delta": "y delta -0.3 0.7 yz delta 1.5", "scale": "z scale 1.4",
           "trate": "x trate 0.5 z trate -0.4 xy trate 0.9", "wiggle": "z wiggle 1.3 0.7 xz wiggle 0.8 0.9",
           "volume of one": "x erate 0.4 y volume", "volume of two": "x trate 0.4 y erate 0.2 z volume",
@@ -30,9 +31,10 @@ def test_the_fluid_goes_with_the_box(simulation, style):
     """u = dH/dt s + d lo/dt at fractions s of the edges H: against the box one step before and one after."""
     eta, a, dt, N = 1.3, 0.7, 1e-4, 40
     x = np.array([(0.3, 2.1, -1.7), (5.0, 9.2, 4.4), (1.0, 6.0, 0.0)])
-    sim = simulation(Spheres(x, a), f"cut_off_distance 3 visc {eta} fluid_velocity box rotation yes", fix=False, box=BOX,
-                     tilt=(0.5, -0.4, 0.6), boundary="p p p", dt=dt, comm="comm_modify vel yes")
-    sim.commands("variable d equal 0.3*sin(5*elaplong*dt)\nvariable r equal 1.5*cos(5*elaplong*dt)\nfix drag all stokes_dynamics apply no\n"
+    sim = simulation(Spheres(x, a), f"cut_off_distance 3 visc {eta} fluid_velocity box rotation yes", fix=False,
+                     box=BOX, tilt=(0.5, -0.4, 0.6), boundary="p p p", dt=dt, comm="comm_modify vel yes")
+    sim.commands("variable d equal 0.3*sin(5*elaplong*dt)\nvariable r equal 1.5*cos(5*elaplong*dt)\n"
+                 "fix drag all stokes_dynamics apply no\n"
                  f"fix d all deform 1 {STYLES[style]} remap v units box")
     seen = []
     for n in range(3):
@@ -82,7 +84,8 @@ SHELLS = "multiblob 12 lubrication yes relative_tolerance 1e-8"
 
 @pytest.mark.parametrize("style", ["", SHELLS], ids=["points", "shells"])
 def test_ab2_is_of_second_order_through_sheared_faces(simulation, style):
-    """Three spheres that interact, through faces and flips of the box: differences of paths fall with the square of the step."""
+    """Three spheres that interact, through faces and flips of the box: differences of paths fall with the square of the
+    step."""
     ends = []
     for dt in (0.1, 0.05, 0.025):
         sim = path(simulation, "box", dt, style=style)
@@ -95,12 +98,13 @@ def test_ab2_is_of_second_order_through_sheared_faces(simulation, style):
 
 
 def test_a_clump_without_load_goes_with_the_sheared_flow(simulation):
-    """A dumbbell along the axis of the vorticity keeps its height: in every step its centroid goes with the fluid there, also where
-    that is far from the origin and the clump has crossed faces. ab2 then adds nothing to the velocity of now."""
+    """A dumbbell along the axis of the vorticity keeps its height: in every step its centroid goes with the fluid
+    there, also where that is far from the origin and the clump has crossed faces. ab2 then adds nothing to the velocity
+    of now."""
     dt, rate, steps = 0.1, 0.4, 60
     x = np.array([(4.5, 8.0, 0.0), (4.5, 8.0, 2.0)])
-    sim = simulation(Spheres(x, molecule=1), "clumps_only yes visc 1 rigid_clumps yes rotation yes fluid_velocity box", fix=False, box=BOX,
-                     tilt=(0.0, 0.0, 0.0), boundary="p p p", dt=dt, comm="comm_modify vel yes")
+    sim = simulation(Spheres(x, molecule=1), "clumps_only yes visc 1 rigid_clumps yes rotation yes fluid_velocity box",
+                     fix=False, box=BOX, tilt=(0.0, 0.0, 0.0), boundary="p p p", dt=dt, comm="comm_modify vel yes")
     sim.commands(f"{FIX}\nfix d all deform 1 xy erate {rate} remap v flip yes").run(steps)
     carried = x + np.array([rate * (8.0 - 1.0) * dt * steps, 0.0, 0.0])
     assert carried[0, 0] > BOX[0][1] + 10.0
@@ -123,14 +127,16 @@ def test_velocities_and_box_are_of_one_moment(simulation):
     assert np.abs(sim.v - v).max() < 1e-10 * np.abs(v).max()
 
 
-@pytest.mark.parametrize("ranks, style", [(1, ""), (3, ""), (1, SHELLS + " max_iter 200"), (2, SHELLS + " max_iter 200")])
+@pytest.mark.parametrize("ranks, style", [(1, ""), (3, ""), (1, SHELLS + " max_iter 200"),
+                                          (2, SHELLS + " max_iter 200")])
 def test_a_sheared_run_in_pieces_on_any_ranks_is_the_run_in_one(tmp_path, ranks, style):
     def script(runs, restart=False):
         (words, options), commands = sheared("box", 0.05, style=style.replace("1e-8", "1e-12"))
         lines = input_lines(cloud(), words, str(tmp_path / "data"), **options)
         if restart:
             lines = from_restart(lines)
-        return lines + commands.splitlines() + dump_lines(tmp_path / "end", every=60, columns="xu yu zu f_move[1] f_move[2] f_move[3]") + runs
+        return lines + commands.splitlines() + dump_lines(tmp_path / "end", every=60,
+                                                          columns="xu yu zu f_move[1] f_move[2] f_move[3]") + runs
 
     def last():
         return read_dump(tmp_path / "end")[-1][1]
@@ -145,10 +151,12 @@ def test_a_sheared_run_in_pieces_on_any_ranks_is_the_run_in_one(tmp_path, ranks,
 
 
 def test_the_box_flips_in_the_step_after_half_an_edge(simulation, tmp_path):
-    """Not when LAMMPS re-neighbours for another reason: noise is that of the box as it is, and a run in pieces that of the run in one."""
+    """Not when LAMMPS re-neighbours for another reason: noise is that of the box as it is, and a run in pieces that of
+    the run in one."""
     (words, options), commands = sheared("box", 0.05, rate=0.41)
     sim = simulation(cloud(), words, **options).commands(commands)
-    sim.commands(["neigh_modify delay 100 every 100", "variable tilt equal xy", f"fix tell all print 1 '${{tilt}}' file {tmp_path}/tilts"]).run(28)
+    sim.commands(["neigh_modify delay 100 every 100", "variable tilt equal xy",
+                  f"fix tell all print 1 '${{tilt}}' file {tmp_path}/tilts"]).run(28)
     tilts = np.loadtxt(tmp_path / "tilts")
     steps = np.arange(len(tilts)) + 28 - len(tilts) + 1
     expected = 0.41 * 0.05 * 10 * steps
@@ -159,16 +167,20 @@ SHEAR = "fix d all deform 1 xy erate 0.1 remap"
 
 
 @pytest.mark.parametrize("fluid, motion, line, message", [
-    ("box", FIX, f"{SHEAR} x", "fix d of style deform: remap x moves the spheres with the box, and the fluid carries them as well"),
-    ("v_ux 0 0", FIX, "fix d all deform 1 xy erate 0.1", "fix d of style deform: remap x moves the spheres with the box"),
-    ("box", "fix drag all stokes_dynamics\nfix move all nve/sphere", f"{SHEAR} none", "needs the velocity of its image"),
+    ("box", FIX, f"{SHEAR} x",
+     "fix d of style deform: remap x moves the spheres with the box, and the fluid carries them as well"),
+    ("v_ux 0 0", FIX, "fix d all deform 1 xy erate 0.1",
+     "fix d of style deform: remap x moves the spheres with the box"),
+    ("box", "fix drag all stokes_dynamics\nfix move all nve/sphere", f"{SHEAR} none",
+     "needs the velocity of its image"),
     ("v_ux 0 0", "fix drag all stokes_dynamics\nfix move all nve/sphere", f"{SHEAR} none", "use remap v"),
     ("0 0 0 rigid_clumps yes rotation yes", FIX, f"{SHEAR} x", "remap x moves the spheres of a rigid clump apart"),
     ("box", FIX + " adapt 1 1e-3 1 0.1", f"{SHEAR} v", "fix d of style deform counts its rate"),
 ])
 def test_what_a_box_that_moves_does_not_go_with_is_named(simulation, fluid, motion, line, message):
-    sim = simulation(cloud(), f"cut_off_distance inf visc 1 fluid_velocity {fluid}", fix=False, box=BOX, tilt=(0.0, 0.0, 0.0),
-                     boundary="p p p", dt=0.01, comm="comm_modify vel yes", before_pair="variable ux atom 0.1*y")
+    sim = simulation(cloud(), f"cut_off_distance inf visc 1 fluid_velocity {fluid}", fix=False, box=BOX,
+                     tilt=(0.0, 0.0, 0.0), boundary="p p p", dt=0.01, comm="comm_modify vel yes",
+                     before_pair="variable ux atom 0.1*y")
     with pytest.raises(Exception, match=message):
         sim.commands(motion).commands(line).run(1)
 
@@ -176,15 +188,17 @@ def test_what_a_box_that_moves_does_not_go_with_is_named(simulation, fluid, moti
 @pytest.mark.parametrize("rigid", ["rigid/small", "rigid"])
 @pytest.mark.parametrize("style", ["rigid_clumps yes rotation yes", "multiblob 12"])
 def test_rigid_bodies_with_inertia_do_not_cross_faces_that_are_sheared(simulation, style, rigid):
-    """LAMMPS gives a body one velocity, also on the other side of a face. Across a face whose images do not move it is right."""
+    """LAMMPS gives a body one velocity, also on the other side of a face. Across a face whose images do not move it is
+    right."""
     def dumbbell(edge, x, v=0.0):
         places = np.array([(1.5, 2.5, 3.5), (1.5, 2.5, 3.5)])
         places[:, edge] = (x, x + 1.9)
         lo, hi = np.array(BOX).T
         images = np.floor((places - lo) / (hi - lo)).astype(int)
         spheres = Spheres(places - images * (hi - lo), v=[v * (edge == d) for d in range(3)], molecule=1)
-        sim = simulation(spheres, f"cut_off_distance inf visc 1 fluid_velocity box add_force yes {style}", fix=False, box=BOX,
-                         tilt=(0.0, 0.0, 0.0), boundary="p p p", dt=1e-3, comm="comm_modify vel yes cutoff 5\nneigh_modify delay 0 every 1 check no")
+        sim = simulation(spheres, f"cut_off_distance inf visc 1 fluid_velocity box add_force yes {style}", fix=False,
+                         box=BOX, tilt=(0.0, 0.0, 0.0), boundary="p p p", dt=1e-3, comm="comm_modify vel yes cutoff 5\n"
+                         "neigh_modify delay 0 every 1 check no")
         sim.commands([f"set atom {i + 1} image {a} {b} {c}" for i, (a, b, c) in enumerate(images)])
         return sim.commands(["thermo_style custom step", f"fix bodies all {rigid} molecule", f"{SHEAR} v"])
 
@@ -192,7 +206,8 @@ def test_rigid_bodies_with_inertia_do_not_cross_faces_that_are_sheared(simulatio
     lying = dumbbell(0, hi[0] - 1.0).run(2).f
     assert np.abs(dumbbell(0, hi[0] - 4.0).run(2).f - lying).max() < 1e-2 * np.abs(lying).max()
     for x, v, step in ((hi[1] - 1.0, 0.0, "0"), (hi[1] - 1.92, 30.0, "[1-9]")):
-        with pytest.raises(Exception, match=f"fix bodies of style {rigid}: step {step}: atom 2 has crossed a face of the box"):
+        with pytest.raises(Exception,
+                           match=f"fix bodies of style {rigid}: step {step}: atom 2 has crossed a face of the box"):
             dumbbell(1, x, v).run(20)
 
 
@@ -200,9 +215,11 @@ def test_rigid_bodies_with_inertia_do_not_cross_faces_that_are_sheared(simulatio
 def test_a_sphere_that_fix_move_moves_does_not_cross_faces_that_are_sheared(simulation, motion):
     """Its velocity stays that of the first image, while its place becomes that of another one."""
     for axis, crosses in (("0 30 0", True), ("30 0 0", False)):
-        sim = simulation(Spheres([(6.9, 10.9, 0.0), (2.0, 3.0, 1.0)]), "cut_off_distance inf visc 1 fluid_velocity box", fix=False, box=BOX,
-                         tilt=(0.0, 0.0, 0.0), boundary="p p p", dt=1e-2, comm="comm_modify vel yes\nneigh_modify delay 0 every 1 check no")
-        sim.commands(["group one id 1", f"velocity one set {axis}", f"fix go one move linear {axis}", motion, f"{SHEAR} v"])
+        sim = simulation(Spheres([(6.9, 10.9, 0.0), (2.0, 3.0, 1.0)]), "cut_off_distance inf visc 1 fluid_velocity box",
+                         fix=False, box=BOX, tilt=(0.0, 0.0, 0.0), boundary="p p p", dt=1e-2,
+                         comm="comm_modify vel yes\nneigh_modify delay 0 every 1 check no")
+        sim.commands(["group one id 1", f"velocity one set {axis}", f"fix go one move linear {axis}", motion,
+                      f"{SHEAR} v"])
         if not crosses:
             sim.run(5)
             continue
@@ -221,12 +238,15 @@ def test_a_fluid_at_rest_allows_compression(simulation):
 
 def test_vorticity_of_the_box_is_not_given_twice(simulation):
     with pytest.raises(Exception, match="keyword fluid_vorticity: fluid_velocity box has a vorticity of its own"):
-        simulation(cloud(), "cut_off_distance inf visc 1 rotation yes fluid_velocity box fluid_vorticity 0 0 1", fix=False, box=BOX)
+        simulation(cloud(), "cut_off_distance inf visc 1 rotation yes fluid_velocity box fluid_vorticity 0 0 1",
+                   fix=False, box=BOX)
 
 
 def test_a_formula_that_does_not_follow_the_box_is_told(simulation, tmp_path):
     """Half the rate of the box: the jump at a face is not that of the images."""
     for rate, told in ((0.1, False), (0.05, True)):
-        lines = input_lines(cloud(), "cut_off_distance inf visc 1 fluid_velocity v_ux 0 0", str(tmp_path / "data"), fix=False, box=BOX,
-                            tilt=(0.0, 0.0, 0.0), boundary="p p p", dt=0.01, comm="comm_modify vel yes", before_pair=f"variable ux atom {rate}*y")
-        assert ("does not have the period of the box" in lmp(tmp_path, lines + [FIX, f"{SHEAR} v", "run 2"]).log) == told
+        lines = input_lines(cloud(), "cut_off_distance inf visc 1 fluid_velocity v_ux 0 0", str(tmp_path / "data"),
+                            fix=False, box=BOX, tilt=(0.0, 0.0, 0.0), boundary="p p p", dt=0.01,
+                            comm="comm_modify vel yes", before_pair=f"variable ux atom {rate}*y")
+        assert ("does not have the period of the box" in lmp(tmp_path,
+                                                             lines + [FIX, f"{SHEAR} v", "run 2"]).log) == told

@@ -21,21 +21,25 @@ def scene(way, seed=7):
 
 
 def flow(folder, way, grid, spheres, F, tolerance=1e-6, more="", before=(), **how):
-    style = f"cut_off_distance inf visc {ETA} relative_tolerance 1e-9 far_field_tolerance {tolerance} {GEOMETRIES[way]} {more}"
-    return run(folder, spheres, style, pull(F) + [*before, MOVE], grid, box=cell(L, -1, 20), boundary="p p f", dt=1e-9, **how)
+    style = (f"cut_off_distance inf visc {ETA} relative_tolerance 1e-9 far_field_tolerance {tolerance} "
+             f"{GEOMETRIES[way]} {more}")
+    return run(folder, spheres, style, pull(F) + [*before, MOVE], grid, box=cell(L, -1, 20), boundary="p p f", dt=1e-9,
+               **how)
 
 
 def mean_along(way, z, zj, a, F):
     """Of the forces on an area L x L, at a height z: walls-periodic (1), with the speck's radius 0"""
     shape = zj * (H - zj) - a ** 2 / 3
-    per = {"floor": np.minimum(z, zj), "layer": -0.5 * abs(z - zj)}.get(way, np.minimum(z, zj) * (H - np.maximum(z, zj)) / H)
+    per = {"floor": np.minimum(z, zj),
+           "layer": -0.5 * abs(z - zj)}.get(way, np.minimum(z, zj) * (H - np.maximum(z, zj)) / H)
     per = per - (way == "flux") * 3 / H ** 3 * z * (H - z) * shape
     return (per[:, None] * F).sum(axis=0) / (ETA * L * L)
 
 
 @pytest.mark.parametrize("way", GEOMETRIES)
 def test_the_mean_in_a_plane_is_that_of_the_forces(tmp_path, way):
-    """In a plane that cuts no sphere: its points sum all waves that reach it but for those shorter than their distance."""
+    """In a plane that cuts no sphere: its points sum all waves that reach it but for those shorter than their
+    distance."""
     x = np.array([(1.0, 2.0, 1.2), (6.0, 3.0, 1.1), (4.0, 8.0, 4.6), (9.0, 9.0, 1.3)])
     a, F = np.array([1.0, 0.5, 0.8, 1.2]), np.array([(1, 0.3, -1), (-0.5, 1, 0.2), (2, -1, 0.4), (0.7, 0.4, 1)])
     F[:, :2] -= F[:, :2].mean(axis=0) if way == "layer" else 0
@@ -55,7 +59,8 @@ def test_fluid_rests_at_walls_and_is_not_behind_them(tmp_path, way, top):
         assert np.abs(field["velocity"][field["inside"] == 0]).max() <= rests
 
 
-@pytest.mark.parametrize("way, more", [*[(way, "") for way in GEOMETRIES], ("floor", "multiblob 12 lubrication yes"), ("flux", "multiblob 12")])
+@pytest.mark.parametrize("way, more", [*[(way, "") for way in GEOMETRIES], ("floor", "multiblob 12 lubrication yes"),
+                                       ("flux", "multiblob 12")])
 def test_a_small_sphere_goes_with_the_flow(tmp_path, way, more):
     """But for the second derivatives that it averages over, a^2/6"""
     spheres, F = scene(way)
@@ -101,16 +106,20 @@ def test_the_stream_is_added(tmp_path):
     spheres, F = scene("pressure")
     grid = f"9 8 7 lo 0 0 0.4 hi {L} {L} 5.7"
     still = flow(tmp_path, "pressure", grid, spheres, F)[0]
-    moving = flow(tmp_path, "pressure", grid, spheres, F, more="fluid_velocity v_u 0 0", before_pair="variable u atom 0.2*z*(6-z)")[0]
+    moving = flow(tmp_path, "pressure", grid, spheres, F, more="fluid_velocity v_u 0 0",
+                  before_pair="variable u atom 0.2*z*(6-z)")[0]
     z = still.points()[..., 2]
     outside = still["inside"] == 0
-    assert (moving["velocity"] - still["velocity"])[outside] == pytest.approx((np.stack([0.2 * z * (H - z), 0 * z, 0 * z], axis=-1))[outside], abs=1e-9)
+    assert (moving["velocity"] - still["velocity"])[outside] == pytest.approx(
+        (np.stack([0.2 * z * (H - z), 0 * z, 0 * z], axis=-1))[outside], abs=1e-9)
 
 
 @pytest.mark.parametrize("style, boundary, message", [
-    ("cut_off_distance inf visc 1 wall zlo 0", "f f f", "keyword wall, whose images are not in the flow .* in an open box; make the box periodic along "
+    ("cut_off_distance inf visc 1 wall zlo 0", "f f f",
+     "keyword wall, whose images are not in the flow .* in an open box; make the box periodic along "
      "the wall .boundary p p f."),
-    ("cut_off_distance 3 visc 1", "p p f", "periodic in 2 of 3 directions: .* in two of them with cut_off_distance inf")])
+    ("cut_off_distance 3 visc 1", "p p f",
+     "periodic in 2 of 3 directions: .* in two of them with cut_off_distance inf")])
 def test_boxes_without_a_flow_are_named(simulation, style, boundary, message):
     sim = simulation(Spheres([(1, 1, 2)]), style, box=cell(12), boundary=boundary, dt=1e-3)
     with pytest.raises(LammpsError, match=message):

@@ -1,4 +1,5 @@
-"""fix stokes_dynamics/overdamped with spin: spheres that a field keeps spinning, by a torque that is found and may be cut."""
+"""fix stokes_dynamics/overdamped with spin: spheres that a field keeps spinning, by a torque that is found and may be
+cut."""
 import re
 
 import numpy as np
@@ -12,13 +13,14 @@ BOX = [(-30.0, 30.0)] * 3
 X = np.array([(0, 0, 0), (2.3, 0.4, 0), (0.7, 2.6, 0.5), (2.0, 2.0, 3.5), (5.0, -1.0, 1.0)])
 W = np.array((0.3, 2.0, -0.4))
 LOAD = np.array([(np.sin(3 * i), 0.1 * i, -5 - 0.2 * i) for i in range(1, 6)])
-PULL = "variable fx atom sin(3*id)\nvariable fy atom 0.1*id\nvariable fz atom -5-0.2*id\nfix pull all addforce v_fx v_fy v_fz"
+PULL = ("variable fx atom sin(3*id)\nvariable fy atom 0.1*id\nvariable fz atom -5-0.2*id\n"
+        "fix pull all addforce v_fx v_fy v_fz")
 SPUN, FREE = [0, 2, 3], [1, 4]
 
 
 def spinning(simulation, words, options=f"spin some {W[0]} {W[1]} {W[2]}", molecule=0, x=X):
-    sim = simulation(Spheres(x, molecule=molecule), f"cut_off_distance inf visc {ETA} {words} relative_tolerance 1e-10", fix=False, box=BOX,
-                     dt=0.02)
+    sim = simulation(Spheres(x, molecule=molecule), f"cut_off_distance inf visc {ETA} {words} relative_tolerance 1e-10",
+                     fix=False, box=BOX, dt=0.02)
     return sim.commands(f"group some id 1 3 4\n{PULL}\n{FIX} {options}")
 
 
@@ -32,8 +34,9 @@ def twist(sim, torques):
     return sim
 
 
-@pytest.mark.parametrize("words", ["rotation yes", "rotation yes lubrication yes", "rotation yes wall zlo -3", "multiblob 12 lubrication yes",
-                                   "rotation yes lubrication yes wall zlo -2.5", "rotation yes rigid_clumps yes lubrication yes"])
+@pytest.mark.parametrize("words", ["rotation yes", "rotation yes lubrication yes", "rotation yes wall zlo -3",
+                                   "multiblob 12 lubrication yes", "rotation yes lubrication yes wall zlo -2.5",
+                                   "rotation yes rigid_clumps yes lubrication yes"])
 def test_spun_spheres_turn_as_told_by_the_torque_that_is_found(simulation, words):
     """The same torques, put on spheres that are free, turn them as fast and move all alike."""
     molecule = [0, 7, 0, 0, 7] if "clumps" in words else 0
@@ -49,17 +52,20 @@ def test_spun_spheres_turn_as_told_by_the_torque_that_is_found(simulation, words
 
 
 def test_a_lone_sphere_needs_the_torque_of_stokes(simulation):
-    sim = simulation(Spheres([(0, 0, 0)], A), f"cut_off_distance inf visc {ETA} rotation yes", fix=False, box=BOX, dt=0.1)
+    sim = simulation(Spheres([(0, 0, 0)], A), f"cut_off_distance inf visc {ETA} rotation yes", fix=False, box=BOX,
+                     dt=0.1)
     sim.commands(f"{FIX} spin all {W[0]} {W[1]} {W[2]}").run(1)
     assert sim.fix_rows("move")[0, 6:9] == pytest.approx(-8 * np.pi * ETA * A**3 * W, rel=1e-12)
 
 
 def test_above_the_largest_torque_a_sphere_slips(simulation):
-    """Of two spheres one is close to the floor: its film needs more. It turns by the largest torque, and the other one as told."""
+    """Of two spheres one is close to the floor: its film needs more. It turns by the largest torque, and the other one
+    as told."""
     w, far = 3.0, 8 * np.pi * ETA
     x = np.array([(0, 0, 1.01), (9, 0, 9.0)])
     def run(most, steps=4):
-        sim = simulation(Spheres(x), f"cut_off_distance inf visc {ETA} rotation yes lubrication yes wall zlo 0 relative_tolerance 1e-9", fix=False,
+        sim = simulation(Spheres(x), f"cut_off_distance inf visc {ETA} rotation yes lubrication yes wall zlo 0 "
+                                     "relative_tolerance 1e-9", fix=False,
                          box=[(-30.0, 40.0), (-30.0, 30.0), (-1.0, 30.0)], dt=1e-4)
         return sim.commands(f"group tops id 1 2\n{FIX} spin tops 0 {w} 0 {most}").run(steps)
     free = run("")
@@ -81,8 +87,10 @@ def test_above_the_largest_torque_a_sphere_slips(simulation):
 
 @pytest.mark.parametrize("of_others, turns", [(5.0, 4.0), (1.0, 2.0), (-5.0, -4.0), (2.5, 3.0), (3.5, 3.0)])
 def test_a_sphere_that_slips_is_driven_or_braked(simulation, of_others, turns):
-    """Angular velocities about y, of a lone sphere and a field of 3: other torques alone would give the first, the field's largest torque gives 1."""
-    sim = simulation(Spheres([(0, 0, 0)], A), f"cut_off_distance inf visc {ETA} rotation yes", fix=False, box=BOX, dt=1e-4)
+    """Angular velocities about y, of a lone sphere and a field of 3: other torques alone would give the first, the
+    field's largest torque gives 1."""
+    sim = simulation(Spheres([(0, 0, 0)], A), f"cut_off_distance inf visc {ETA} rotation yes", fix=False, box=BOX,
+                     dt=1e-4)
     unit = 8 * np.pi * ETA * A**3
     twist(sim.commands(f"{FIX} spin all 0 3 0 {unit}"), np.array([(0, of_others * unit, 0)])).run(3)
     assert sim.atom("omega")[0] == pytest.approx((0, turns, 0), abs=1e-9)
@@ -95,7 +103,7 @@ def test_spun_spheres_diffuse_as_boltzmann_says(simulation):
     assert np.abs(sim.atom("omega")).max() == 0.0
 
 
-# --- ranks, pieces ------------------------------------------------------------------------------------------------------------
+# --- ranks, pieces ----------------------------------------------------------------------------------------------------
 
 def crowd():
     """Some within the reach of films, above z = -60"""
@@ -108,7 +116,8 @@ def crowd():
 
 
 SHARP = "cut_off_distance inf visc 1.1 relative_tolerance 1e-12 max_iter 400 rotation yes lubrication yes wall zlo EDGE"
-WAYS = {"spun": ("f f f", crowd, SHARP, " spin all 0 3 0" + TIGHT), "cut": ("f f f", crowd, SHARP, " spin all 0 3 0 40" + TIGHT)}
+WAYS = {"spun": ("f f f", crowd, SHARP, " spin all 0 3 0" + TIGHT),
+        "cut": ("f f f", crowd, SHARP, " spin all 0 3 0 40" + TIGHT)}
 
 
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
@@ -126,7 +135,7 @@ def test_the_largest_torque_matters_there(tmp_path):
     assert np.abs(ends[1] - ends[0])[:, :3].max() > 0.01
 
 
-# --- what is refused ------------------------------------------------------------------------------------------------------------
+# --- what is refused --------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("style, words, message", [
     ("rotation yes", "spin some 0 1", "keyword spin"),
@@ -136,7 +145,8 @@ def test_the_largest_torque_matters_there(tmp_path):
     ("rotation yes", "spin nobody 0 1 0", "keyword spin: group 'nobody' does not exist"),
     ("", "spin some 0 1 0", "keyword spin: keyword rotation of pair_style stokes_dynamics must be yes"),
     ("rotation yes rigid_clumps yes", "spin some 0 1 0", "keyword spin: atom 3 is part of a rigid clump"),
-    ("rotation yes", "held some spin some 0 1 0", "keyword spin: atom 1 is in the group of keyword held or pin as well"),
+    ("rotation yes", "held some spin some 0 1 0",
+     "keyword spin: atom 1 is in the group of keyword held or pin as well"),
     ("rotation yes", "spin some 0 1 0 temperature 1 5 scheme ab2", "keyword spin: the mobility has a drift")])
 def test_what_cannot_spin_is_named(simulation, style, words, message):
     with pytest.raises(LammpsError, match=re.escape(message)):
@@ -144,6 +154,7 @@ def test_what_cannot_spin_is_named(simulation, style, words, message):
 
 
 def test_lone_clumps_do_not_spin(simulation):
-    sim = simulation(Spheres(X), f"clumps_only yes rigid_clumps yes visc {ETA} rotation yes", fix=False, box=BOX, dt=0.1)
+    sim = simulation(Spheres(X), f"clumps_only yes rigid_clumps yes visc {ETA} rotation yes", fix=False, box=BOX,
+                     dt=0.1)
     with pytest.raises(LammpsError, match="keyword spin: it is for spheres that feel each other: use clumps_only no"):
         sim.commands(f"{FIX} spin all 0 1 0").run(0)

@@ -5,9 +5,11 @@ import pytest
 from system import LammpsError, Spheres, dump_lines, input_lines, largest_difference, lmp, read_dump
 from without_inertia import CLUMPS, mixed
 
-SETTINGS = ["", "rotation yes", "rotation yes lubrication yes", "multiblob 12 lubrication yes", "multiblob 12 one_body no lubrication yes",
-            "multiblob 42 lubrication yes", "multiblob 12", "rotation yes lubrication yes lubrication_gap 0.01", "rigid_clumps yes rotation yes",
-            "rigid_clumps yes rotation yes shell 12", "rigid_clumps yes rotation yes shell 42 lubrication yes", "precondition none"]
+SETTINGS = ["", "rotation yes", "rotation yes lubrication yes", "multiblob 12 lubrication yes",
+            "multiblob 12 one_body no lubrication yes", "multiblob 42 lubrication yes", "multiblob 12",
+            "rotation yes lubrication yes lubrication_gap 0.01", "rigid_clumps yes rotation yes",
+            "rigid_clumps yes rotation yes shell 12", "rigid_clumps yes rotation yes shell 42 lubrication yes",
+            "precondition none"]
 
 
 def cluster():
@@ -35,7 +37,7 @@ def test_a_pair_style_given_again_is_as_if_it_were_the_first(simulation, boundar
         assert np.abs(sim.v - fresh[words]).max() < 1e-7 * np.abs(fresh[words]).max(), words
 
 
-# --- what was derived from the settings before ------------------------------------------------------------------------------
+# --- what was derived from the settings before ------------------------------------------------------------------------
 
 FIRST = ["rigid_clumps yes rotation yes", "rigid_clumps yes shell 12", "rigid_clumps yes multiblob 12",
          "rigid_clumps yes rotation yes clumps_only yes"]
@@ -51,7 +53,8 @@ def test_rigid_clumps_first_and_free_multiblobs_second(tmp_path, first, ranks):
     for name, words in (("again", [first, "multiblob 12"]), ("fresh", ["multiblob 12"])):
         folder = tmp_path / name
         folder.mkdir()
-        styles = [f"pair_style stokes_dynamics cut_off_distance inf visc 1.3 relative_tolerance 1e-10 {w}" for w in words]
+        styles = [f"pair_style stokes_dynamics cut_off_distance inf visc 1.3 relative_tolerance 1e-10 {w}"
+                  for w in words]
         lines = input_lines(spheres, [styles[0], "pair_coeff * *"], folder / "data", box=[(-9, 9)] * 3)
         for style in styles[1:]:
             lines += ["run 1", style, "pair_coeff * *"]
@@ -88,6 +91,7 @@ def test_torques_of_a_pair_style_before_are_gone_where_the_next_has_none(simulat
 def test_a_run_without_its_preparation_after_another_pair_style_is_an_error(simulation, fix):
     sim = simulation(mixed(), CLUMPS, fix=False, dt=0.01).commands(fix).run(2)
     sim.commands([f"pair_style stokes_dynamics {CLUMPS} relative_tolerance 1e-4", "pair_coeff * *"])
-    with pytest.raises(LammpsError, match="Pair style stokes_dynamics: the command has been given again since the last run"):
+    with pytest.raises(LammpsError,
+                       match="Pair style stokes_dynamics: the command has been given again since the last run"):
         sim.command("run 1 pre no")
     sim.run(1)

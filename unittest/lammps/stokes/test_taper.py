@@ -23,7 +23,8 @@ def test_tapered_forces_against_a_dense_solve(simulation, taper, mode, R):
     M = model.mobility(spheres.x, spheres.a, ETA, sees=model.same_clump(spheres) if mode else None)
     M *= np.kron(factors(spheres.x, taper, R), np.ones((3, 3)))
     expected = np.linalg.solve(M, -spheres.v.ravel()).reshape(-1, 3)
-    sim = simulation(spheres, f"cut_off_distance {R} {mode} taper {taper} visc {ETA} {EXACT}", comm="comm_modify cutoff 12").run()
+    sim = simulation(spheres, f"cut_off_distance {R} {mode} taper {taper} visc {ETA} {EXACT}",
+                     comm="comm_modify cutoff 12").run()
     assert largest_difference(sim.drag, expected) < 1e-9
 
 
@@ -33,7 +34,8 @@ def test_tapered_forces_and_torques_against_a_dense_solve(simulation, taper):
     spheres.a *= np.random.default_rng(7).uniform(0.6, 1.0, spheres.n)
     w = np.random.default_rng(8).normal(size=(spheres.n, 3))
     n = spheres.n
-    M = model.mobility(spheres.x, spheres.a, ETA, rotation=True) * np.kron(factors(spheres.x, taper, R), np.ones((6, 6)))
+    M = model.mobility(spheres.x, spheres.a, ETA, rotation=True) * np.kron(factors(spheres.x, taper, R),
+                                                                           np.ones((6, 6)))
     expected = np.linalg.solve(M, -np.hstack([spheres.v, w]).ravel()).reshape(n, 6)
     sim = simulation(spheres, f"cut_off_distance {R} taper {taper} rotation yes visc {ETA} {EXACT}")
     sim.raw("omega")[:] = w[sim.ids() - 1]

@@ -37,8 +37,8 @@ def smallest_eigenvalue(spheres, rotation):
 @pytest.mark.parametrize("what,rotation", [("cloud", "no"), ("cloud", "yes"), ("flocs", "no")])
 @pytest.mark.parametrize("precondition", ["none", "clump", "sparse", "auto"])
 def test_eigenvalue_is_right_where_the_solves_do_not_show_it(simulation, what, rotation, precondition):
-    """Uniform velocity, a loose tolerance, preconditioners: all hide the smallest eigenvalue from the conjugate gradients, whose own
-    estimate is then 2 to 30 times too large."""
+    """Uniform velocity, a loose tolerance, preconditioners: all hide the smallest eigenvalue from the conjugate
+    gradients, whose own estimate is then 2 to 30 times too large."""
     spheres = loose_lattice(5) if what == "cloud" else flocs(6, 20, 14.0)
     spheres.a *= np.random.default_rng(7).uniform(0.9, 1.0, spheres.n)
     spheres.v = np.tile(ALONG, (spheres.n, 1))
@@ -56,7 +56,8 @@ def test_limit_of_the_time_step_counts_spins(simulation, factor, stable):
     mass, spin = 1.7 * 4 / 3 * np.pi * A**3, 8 * np.pi * ETA * A**3
     limit = 2 * 0.4 * mass * A**2 / spin
     spheres = Spheres([(0, 0, 0), (200, 0, 0)], A)
-    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} {EXACT} rotation yes", dt=factor * limit, box=[(-300, 300)] * 3)
+    sim = simulation(spheres, f"cut_off_distance inf visc {ETA} {EXACT} rotation yes", dt=factor * limit,
+                     box=[(-300, 300)] * 3)
     sim.raw("omega")[:] = ALONG
     sim.commands(["fix move all nve/sphere"]).run(200)
     assert sim.fix_vector()[8] == pytest.approx(limit, rel=1e-2)
@@ -74,11 +75,13 @@ def unequal_lattice(n=4):
 
 
 @pytest.mark.parametrize("rotation", ["no", "yes"])
-@pytest.mark.parametrize("make,precondition", [(lambda: lattice(5), "none"), (row_of_twelve, "none"), (lambda: lattice(6), "sparse"),
-                                               (unequal_lattice, "none")], ids=["lattice", "overlapping", "sparse", "unequal"])
+@pytest.mark.parametrize("make,precondition", [(lambda: lattice(5), "none"), (row_of_twelve, "none"),
+                                               (lambda: lattice(6), "sparse"), (unequal_lattice, "none")],
+                         ids=["lattice", "overlapping", "sparse", "unequal"])
 def test_growth_starts_within_a_fifth_of_the_printed_limit(simulation, make, precondition, rotation):
-    """Spheres with a breath of velocity and spin, and nothing but drag: below the limit every motion dies, above it one grows.
-    Translation and spin of close spheres die together, so the limit is not that of the fastest spin times that of the mobility."""
+    """Spheres with a breath of velocity and spin, and nothing but drag: below the limit every motion dies, above it one
+    grows. Translation and spin of close spheres die together, so the limit is not that of the fastest spin times that
+    of the mobility."""
     spheres, rng = make(), np.random.default_rng(5)
     spheres.v = 1e-15 * rng.normal(size=spheres.x.shape)
     spins = 1e-15 / A * rng.normal(size=spheres.x.shape)
@@ -103,7 +106,8 @@ def test_growth_starts_within_a_fifth_of_the_printed_limit(simulation, make, pre
 @pytest.mark.hard_case("time step above the limit")
 @pytest.mark.parametrize("precondition", ["none", "sparse"])
 def test_dense_free_cloud_is_stable_below_the_printed_limit_and_not_above(simulation, tmp_path, precondition):
-    """No force but drag: the kinetic energy can only fall. Slow spheres, so that a run that blows up stays in its box."""
+    """No force but drag: the kinetic energy can only fall. Slow spheres, so that a run that blows up stays in its
+    box."""
     spheres = loose_lattice(5, v=1e-7)
     words = f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-6 precondition {precondition}"
     energy, warnings, limit = {}, {}, 1e-3

@@ -1,31 +1,33 @@
-"""fix stokes_dynamics/overdamped with torque, given torques in the axes of space or of the particle, and with pin, spheres and clumps that
-turn in their place: dense algebra, closed forms, what is found again by LAMMPS's own forces, one run made in several ways."""
+"""fix stokes_dynamics/overdamped with torque, given torques in the axes of space or of the particle, and with pin,
+spheres and clumps that turn in their place: dense algebra, closed forms, what is found again by LAMMPS's own forces,
+one run made in several ways."""
 import numpy as np
 import pytest
 
 import model
 from brownian import A, ETA, KT, L_OF_FOUR, copies, end, in_pieces
 from system import LammpsError, Spheres, dump_lines
-from test_directions import (CENTRE, CLUMPS, MOVE, POINTS, QUATERNIONS, SHELLS, SPIN, dipole_lines, dipoles, directions, quaternions, rotation,
-                             some_quaternions, turned)
+from test_directions import (CENTRE, CLUMPS, MOVE, POINTS, QUATERNIONS, SHELLS, SPIN, dipole_lines, dipoles, directions,
+                             quaternions, rotation, some_quaternions, turned)
 from test_spin import BOX, FREE, LOAD, PULL, X, twist
 
 T = np.array((2.0, -1.0, 3.0))
 TORQUE = "torque some 2 -1 3"
 SOME = np.isin(range(5), [0, 2, 3])
 WORDS = ["rotation yes", "rotation yes lubrication yes", "rotation yes wall zlo -3", "multiblob 12 lubrication yes",
-         "rotation yes lubrication yes wall zlo -2.5", "rotation yes rigid_clumps yes lubrication yes", "multiblob 12 rigid_clumps yes",
-         "rotation yes rigid_clumps yes clumps_only yes", "rigid_clumps yes shell 12 clumps_only yes"]
+         "rotation yes lubrication yes wall zlo -2.5", "rotation yes rigid_clumps yes lubrication yes",
+         "multiblob 12 rigid_clumps yes", "rotation yes rigid_clumps yes clumps_only yes",
+         "rigid_clumps yes shell 12 clumps_only yes"]
 
 
 def loaded(simulation, words, options="", x=X, pull=PULL):
     molecule = [7, 7, 8, 8, 8] if "shell" in words else [0, 7, 0, 0, 7] if "clumps" in words else 0
-    sim = simulation(Spheres(x, molecule=molecule), f"cut_off_distance inf visc {ETA} {words} relative_tolerance 1e-10", fix=False, box=BOX,
-                     dt=0.02)
+    sim = simulation(Spheres(x, molecule=molecule), f"cut_off_distance inf visc {ETA} {words} relative_tolerance 1e-10",
+                     fix=False, box=BOX, dt=0.02)
     return sim.commands(f"group some id 1 3 4\ngroup both id 2 5\n{pull}\n{MOVE} {options}")
 
 
-# --- torque ----------------------------------------------------------------------------------------------------------------
+# --- torque -----------------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("words", WORDS)
 def test_a_given_torque_is_one_of_lammps(simulation, words):
@@ -40,9 +42,11 @@ def test_a_given_torque_is_one_of_lammps(simulation, words):
 
 
 def test_a_lone_sphere_turns_by_stokes_law_and_variables_change(simulation, tmp_path):
-    """A torque that grows with time: the angle is its integral, to which Adams' and Bashforth's step is exact after the first one."""
+    """A torque that grows with time: the angle is its integral, to which Adams' and Bashforth's step is exact after the
+    first one."""
     sim = dipoles(simulation, tmp_path, CENTRE, (1, 0, 0), POINTS, 0.01)
-    sim.commands(f"variable t equal {SPIN!r}*(0.3+step*dt)\nvariable s atom id*{SPIN!r}\ngroup some id 1\n{MOVE} torque some 0 0 v_t").run(100)
+    sim.commands(f"variable t equal {SPIN!r}*(0.3+step*dt)\nvariable s atom id*{SPIN!r}\ngroup some id 1\n"
+                 f"{MOVE} torque some 0 0 v_t").run(100)
     assert sim.atom("omega")[0] == pytest.approx([0, 0, 1.3], rel=1e-12)
     assert np.arctan2(*directions(sim)[0, 1::-1]) == pytest.approx(0.3 + 0.5 - 0.5 * 0.01**2, rel=1e-12)
     sim.command("unfix move")
@@ -50,7 +54,8 @@ def test_a_lone_sphere_turns_by_stokes_law_and_variables_change(simulation, tmp_
     assert sim.atom("omega")[0] == pytest.approx([0, 1, 0], rel=1e-12)
 
 
-@pytest.mark.parametrize("words, scheme", [(CLUMPS, "ab2"), (CLUMPS, "euler"), (CLUMPS, "midpoint"), (CLUMPS + " clumps_only yes", "ab2"),
+@pytest.mark.parametrize("words, scheme", [(CLUMPS, "ab2"), (CLUMPS, "euler"), (CLUMPS, "midpoint"),
+                                           (CLUMPS + " clumps_only yes", "ab2"),
                                            (f"{SHELLS} rigid_clumps yes relative_tolerance 1e-10", "ab2")])
 def test_a_torque_along_the_axes_of_a_clump_turns_it_steadily(simulation, tmp_path, words, scheme):
     """Its angular velocity is fixed in its own axes, so in space too; along the axes of space it is not."""
@@ -72,7 +77,8 @@ def test_axes_of_a_sphere_are_its_quaternion_or_its_dipole(simulation, tmp_path)
     q, mu, x = some_quaternions(4), np.random.default_rng(2).normal(size=(4, 3)), copies(np.zeros((1, 3)), 4, 9.0).x
     words = f"{POINTS} fluid_velocity v_u 0 0 clumps_only yes"
     sim = dipoles(simulation, tmp_path, x, mu, words, 0.05, quaternions=q)
-    sim.commands(f"variable u atom 0.8*z\n{QUATERNIONS}\n{MOVE} torque all 2 -1 3 body yes\nfix read all ave/atom 1 1 1 c_q[*]").run(30)
+    sim.commands(f"variable u atom 0.8*z\n{QUATERNIONS}\n{MOVE} torque all 2 -1 3 body yes\n"
+                 "fix read all ave/atom 1 1 1 c_q[*]").run(30)
     expected = rotation(quaternions(sim)) @ T / SPIN + (0, 0.4, 0)
     assert np.abs(rotation(q) @ T / SPIN + (0, 0.4, 0) - expected).max() > 0.1
     assert np.abs(sim.atom("omega") - expected).max() < 1e-12
@@ -88,18 +94,23 @@ def test_axes_of_a_sphere_are_its_quaternion_or_its_dipole(simulation, tmp_path)
     (POINTS, f"{MOVE} torque all 1 0 x", "keyword torque: 'x'"),
     (POINTS, f"{MOVE} torque all 1 0 v_x", "keyword torque: variable 'x' does not exist"),
     (POINTS, f"{MOVE} torque all 1 0 0 body maybe", "keyword torque: 'maybe'"),
-    (POINTS, f"variable bad atom 1e308*1e3*id\n{MOVE} torque all 1 0 v_bad", "keyword torque: step 0: the torque on atom 1 is not a finite"),
+    (POINTS, f"variable bad atom 1e308*1e3*id\n{MOVE} torque all 1 0 v_bad",
+     "keyword torque: step 0: the torque on atom 1 is not a finite"),
     (POINTS + " group one", f"fix move one stokes_dynamics/overdamped torque all 1 0 0",
      "keyword torque: atom 2 is not in the group of this fix, which does not move it"),
-    (POINTS, f"{MOVE} held one torque all 1 0 0", "keyword torque: atom 1 is in the group of keyword held as well.*use keyword pin"),
+    (POINTS, f"{MOVE} held one torque all 1 0 0",
+     "keyword torque: atom 1 is in the group of keyword held as well.*use keyword pin"),
     (f"cut_off_distance inf visc {ETA}", f"set group all dipole 0 0 0\n{MOVE} torque all 1 0 0",
      "keyword torque: atom 1 is a free sphere, and with rotation no"),
-    (POINTS, f"set group all dipole 0 0 0\n{MOVE} torque all 1 0 0 body yes", "body yes: atom 1 has no axes of its own: give it a dipole"),
-    (POINTS, f"{MOVE} torque all 1 0 0 body yes", "body yes: atom 1 has a dipole, which is a z axis alone: Tx and Ty must be 0"),
+    (POINTS, f"set group all dipole 0 0 0\n{MOVE} torque all 1 0 0 body yes",
+     "body yes: atom 1 has no axes of its own: give it a dipole"),
+    (POINTS, f"{MOVE} torque all 1 0 0 body yes",
+     "body yes: atom 1 has a dipole, which is a z axis alone: Tx and Ty must be 0"),
     (POINTS, f"{MOVE} pin nobody", "keyword pin: group 'nobody' does not exist"),
     (POINTS, f"{MOVE} pin one held all", "keyword pin: atom 1 is in the group of keyword held as well"),
     (POINTS, f"{MOVE} pin one spin all 0 0 1", "keyword spin: atom 1 is in the group of keyword held or pin as well"),
-    (CLUMPS + " clumps_only yes", f"{MOVE} pin one", "keyword pin: it is for spheres and clumps that feel each other: use clumps_only no"),
+    (CLUMPS + " clumps_only yes", f"{MOVE} pin one",
+     "keyword pin: it is for spheres and clumps that feel each other: use clumps_only no"),
     (CLUMPS, f"{MOVE} pin one", "keyword pin: the clump of molecule 1 is only partly in the group"),
     (POINTS, f"{MOVE} pin one temperature 1 5 scheme ab2", "keyword pin: the mobility has a drift")])
 def test_what_cannot_be_turned_or_pinned_is_named(simulation, tmp_path, words, lines, message):
@@ -110,7 +121,7 @@ def test_what_cannot_be_turned_or_pinned_is_named(simulation, tmp_path, words, l
         sim.commands(prepared[:at] + ["group one id 1"] + prepared[at:] + lines.splitlines()).run(0)
 
 
-# --- pin -------------------------------------------------------------------------------------------------------------------
+# --- pin --------------------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("words", WORDS[:7])
 def test_pinned_spheres_and_clumps_stay_by_the_force_that_is_found(simulation, words):
@@ -148,10 +159,12 @@ def test_pinned_spheres_move_their_neighbours_as_dense_algebra_says(simulation):
     assert np.abs(sim.fix_rows("move")[:, 3:9].ravel() + R @ V).max() < 1e-7
 
 
-@pytest.mark.parametrize("words, options", [(POINTS, "scheme euler"), (POINTS, "scheme ab2"), (SHELLS, "scheme midpoint")])
+@pytest.mark.parametrize("words, options", [(POINTS, "scheme euler"), (POINTS, "scheme ab2"),
+                                            (SHELLS, "scheme midpoint")])
 def test_a_pinned_sphere_turns_in_a_shear(simulation, tmp_path, words, options):
     x = [(0.3, 0, 2.0)]
-    sim = dipoles(simulation, tmp_path, x, (0.6, 0, 0.8), f"{words} fluid_velocity v_u 0 0 relative_tolerance 1e-12", 0.1)
+    sim = dipoles(simulation, tmp_path, x, (0.6, 0, 0.8), f"{words} fluid_velocity v_u 0 0 relative_tolerance 1e-12",
+                  0.1)
     sim.commands(f"variable u atom 0.8*z\n{MOVE} {options} pin all").run(50)
     assert (sim.x == x).all()
     assert np.abs(directions(sim) - turned(np.array([(0.6, 0, 0.8)]), np.array([(0, 2.0, 0)]))).max() < 1e-9
@@ -168,7 +181,7 @@ def test_a_pinned_sphere_turns_by_noise_in_its_place(simulation, tmp_path):
     assert (directions(sim) * mu).sum(axis=1).mean() == pytest.approx(np.exp(-1), abs=4 * 0.48 / np.sqrt(n))
 
 
-# --- one run, however it is made -------------------------------------------------------------------------------------------
+# --- one run, however it is made --------------------------------------------------------------------------------------
 
 END = dump_lines("end.dump", every=20, columns="xu yu zu mux muy muz vx vy vz omegax omegay omegaz")
 WAYS = {"points": (POINTS, "scheme ab2", 0), "shells with noise": (SHELLS, "temperature 1.5 7", 0),
@@ -177,8 +190,10 @@ WAYS = {"points": (POINTS, "scheme ab2", 0), "shells with noise": (SHELLS, "temp
 
 def script(folder, way, runs):
     words, options, molecule = WAYS[way]
-    lines = dipole_lines(folder, copies(L_OF_FOUR, 3, 5.0).x + 1.0, np.random.default_rng(9).normal(size=(12, 3)), words, 0.02, molecule=molecule)
-    return lines + ["group some id 1 2 3 4", "group loaded id 5 6 9", "variable t atom 3+id+step/10", "fix push all propel/self dipole 2.0",
+    lines = dipole_lines(folder, copies(L_OF_FOUR, 3, 5.0).x + 1.0, np.random.default_rng(9).normal(size=(12, 3)),
+                         words, 0.02, molecule=molecule)
+    return lines + ["group some id 1 2 3 4", "group loaded id 5 6 9", "variable t atom 3+id+step/10",
+                    "fix push all propel/self dipole 2.0",
                     f"{MOVE} {options} pin some torque loaded 0 0 v_t body yes"] + runs
 
 

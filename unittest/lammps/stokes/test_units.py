@@ -1,6 +1,6 @@
-"""The drag in every unit system of LAMMPS: its own convention is that viscosity times length times velocity, times force->vxmu2f, is
-a force (pair_style lubricate uses it in every term). The factors below are made of CODATA 2018 constants and of the definitions
-of the units in LAMMPS's manual, not taken from the program."""
+"""The drag in every unit system of LAMMPS: its own convention is that viscosity times length times velocity, times
+force->vxmu2f, is a force (pair_style lubricate uses it in every term). The factors below are made of CODATA 2018
+constants and of the definitions of the units in LAMMPS's manual, not taken from the program."""
 import numpy as np
 import pytest
 
@@ -23,7 +23,8 @@ ETA, A, V = 1.3, 0.7, (0.31, -0.2, 0.15)
 
 
 @pytest.mark.parametrize("units", list(UNITS))
-@pytest.mark.parametrize("style", ["cut_off_distance inf algorithm 2", "clumps_only yes", "clumps_only yes rigid_clumps yes"])
+@pytest.mark.parametrize("style", ["cut_off_distance inf algorithm 2", "clumps_only yes",
+                                   "clumps_only yes rigid_clumps yes"])
 def test_drag_of_a_sphere_is_stokes_in_every_unit_system(simulation, units, style):
     length, velocity, viscosity, force = UNITS[units]
     sim = simulation(Spheres([(0, 0, 0)], A, V), f"{style} visc {ETA}", units=units).run()
@@ -40,17 +41,21 @@ def test_units_electron_as_lammps_converts_them(simulation):
 
 @pytest.mark.parametrize("units", ["si", "real", "metal", "nano"])
 def test_limit_of_the_time_step_is_in_the_units_of_time(tmp_path, units):
-    """A lone pair far apart: lambda is close to 1 and the limit 2 m/(6 pi eta a), a time; drag may be added explicitly below it."""
+    """A lone pair far apart: lambda is close to 1 and the limit 2 m/(6 pi eta a), a time; drag may be added explicitly
+    below it."""
     spheres = Spheres([(0, 0, 0), (50.0, 0, 0)], A, [V, V])
     length, velocity, viscosity, force = UNITS[units]
     density = 1.7
-    lines = input_lines(spheres, f"cut_off_distance inf visc {ETA} algorithm 2", tmp_path / "data", units=units, density=density)
+    lines = input_lines(spheres, f"cut_off_distance inf visc {ETA} algorithm 2", tmp_path / "data", units=units,
+                        density=density)
     lines += ["run 0", "variable limit equal f_drag[9]", "print \"limit ${limit}\""]
     said = lmp(tmp_path, lines).text
     limit = float(said.split("limit ")[-1].split()[0])
-    from_lammps = lmp(tmp_path, [f"units {units}", "atom_modify map array", "region b block -1 1 -1 1 -1 1", "create_box 1 b", "mass 1 1.0",
-                                 "create_atoms 1 single 0 0 0", "fix push all setforce 1 0 0", "fix 1 all nve", "pair_style zero 1",
-                                 "pair_coeff * *", "timestep 1e-9", "run 1", "variable v equal vx[1]", "print \"gain $(v_v/1e-9:%.12g)\""]).text
+    from_lammps = lmp(tmp_path, [f"units {units}", "atom_modify map array", "region b block -1 1 -1 1 -1 1",
+                                 "create_box 1 b", "mass 1 1.0", "create_atoms 1 single 0 0 0",
+                                 "fix push all setforce 1 0 0", "fix 1 all nve", "pair_style zero 1",
+                                 "pair_coeff * *", "timestep 1e-9", "run 1", "variable v equal vx[1]",
+                                 "print \"gain $(v_v/1e-9:%.12g)\""]).text
     gain = float(from_lammps.split("gain ")[-1].split()[0])    # velocity per time, of a unit mass under a unit force
     vxmu2f = viscosity * length * velocity / force
     mass = density * 4 / 3 * np.pi * A**3

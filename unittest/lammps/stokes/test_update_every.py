@@ -17,8 +17,9 @@ def three():
 
 def falling(simulation, first_step=0, n=10, reach="inf", more=""):
     sim = simulation(three(), f"cut_off_distance {reach} visc {ETA} update_every {n} {EXACT} {more}", dt=DT)
-    return sim.commands([f"reset_timestep {first_step}", "fix pull all gravity 3.0 vector 0.2 0 -1", "fix move all nve/sphere",
-                         "neigh_modify every 1 delay 0"] + dump_lines(sim.folder / "dump", columns=COLUMNS))
+    return sim.commands([f"reset_timestep {first_step}", "fix pull all gravity 3.0 vector 0.2 0 -1",
+                         "fix move all nve/sphere", "neigh_modify every 1 delay 0"] +
+                        dump_lines(sim.folder / "dump", columns=COLUMNS))
 
 
 def rows(sim, steps):
@@ -54,8 +55,8 @@ def test_between_solves_the_force_follows_the_velocity_with_the_stored_perturbat
             assert largest_difference(now[:, 6:9], fresh) < 1e-10
 
 
-@pytest.mark.parametrize("first_step,steps,due", [(0, 29, {10, 20}), (0, 30, {10, 20, 30}), (7, 20, {10, 20}), (10, 5, set()),
-                                                  (13, 7, {20})])
+@pytest.mark.parametrize("first_step,steps,due", [(0, 29, {10, 20}), (0, 30, {10, 20, 30}), (7, 20, {10, 20}),
+                                                  (10, 5, set()), (13, 7, {20})])
 def test_solves_fall_on_multiples_of_n(simulation, first_step, steps, due):
     frames, solves = rows(falling(simulation, first_step), steps)
     changed = {step for (_, a), (step, b) in zip(frames, frames[1:]) if not np.array_equal(a[:, 9:12], b[:, 9:12])}
@@ -80,7 +81,8 @@ def test_perturbation_follows_its_sphere_to_another_rank(tmp_path):
     spheres = Spheres([(-1.2, 0, 0), (-2.6, 0.4, 0.2), (1.3, 0.1, 0), (2.7, 0, 0)], A,
                       [(2, 0, 0.1), (2, 0.1, 0), (-0.4, 0, 0.3), (1, 0, 0)])
     for ranks in (1, 2):
-        lines = input_lines(spheres, f"cut_off_distance 9 visc {ETA} update_every 50 algorithm 2 relative_tolerance 1e-12",
+        lines = input_lines(spheres,
+                            f"cut_off_distance 9 visc {ETA} update_every 50 algorithm 2 relative_tolerance 1e-12",
                             tmp_path / "data",
                             box=[(-9, 9), (-2, 2), (-2, 2)],
                             before_pair="neigh_modify every 1 delay 0 check no\natom_modify sort 3 1.0", dt=DT)
@@ -96,7 +98,8 @@ def test_perturbation_follows_its_sphere_to_another_rank(tmp_path):
 
 @pytest.mark.parametrize("moved", [True, False])
 def test_a_run_at_another_step_solves_first(simulation, moved):
-    """Also when the step that reset_timestep sets is in the interval of the last solve: spheres may have been displaced meanwhile."""
+    """Also when the step that reset_timestep sets is in the interval of the last solve: spheres may have been displaced
+    meanwhile."""
     sim = simulation(three(), f"cut_off_distance inf visc {ETA} update_every 10 {EXACT}", dt=1e-9).run(13)
     sim.commands((["displace_atoms all random 0.3 0.3 0.3 77"] if moved else []) + ["reset_timestep 17"]).run(0)
     assert largest_difference(sim.drag, model.forces(Spheres(sim.x, A, three().v), ETA)) < 1e-10

@@ -1,5 +1,5 @@
-"""The guess from which algorithm 2 starts. Spheres that see nobody need no solve: whatever the tolerance, the guess already is
-their Stokes drag, since their v' is 0 and F = 6 pi eta a (u_inf + v' - v)."""
+"""The guess from which algorithm 2 starts. Spheres that see nobody need no solve: whatever the tolerance, the guess
+already is their Stokes drag, since their v' is 0 and F = 6 pi eta a (u_inf + v' - v)."""
 import numpy as np
 import pytest
 
@@ -15,8 +15,8 @@ RADII = np.array([0.5, 0.8, 1.1, 1.3, 0.7])
 
 
 def speeding_up(n, steps, seed=4):
-    """Velocities and spins [steps][n,6] that change from step to step: along a line, to which a guess may extrapolate, and by a
-    little beyond it, which must not be lost although the tolerance would bear it."""
+    """Velocities and spins [steps][n,6] that change from step to step: along a line, to which a guess may extrapolate,
+    and by a little beyond it, which must not be lost although the tolerance would bear it."""
     rng = np.random.default_rng(seed)
     start, rate, wave = rng.normal(size=(3, n, 6))
     return [start + 0.02 * k * rate + 3e-4 * np.sin(1.7 * k) * wave for k in range(steps)]
@@ -68,7 +68,8 @@ def test_a_lone_sphere_beside_clumps_has_stokes_drag_in_every_step(simulation, p
     far = LONE + (30.0, 0.0, 0.0)
     spheres = Spheres(np.vstack([clump.x, far]), np.concatenate([clump.a, RADII]), molecule=[1] * 6 + [0] * len(far))
     motion = speeding_up(spheres.n, 8)
-    style = f"visc {ETA} clumps_only yes algorithm 2 relative_tolerance 1e-3 rotation {rotation} precondition {precondition}"
+    style = (f"visc {ETA} clumps_only yes algorithm 2 relative_tolerance 1e-3 rotation {rotation} precondition "
+             f"{precondition}")
     for now, found in zip(motion, drags(simulation, spheres, style, motion, rotation)):
         assert worst(found[6:], stokes(RADII, now[6:], rotation)) < EXACT
 
@@ -105,12 +106,14 @@ def test_warm_start_takes_two_iterations_a_step_and_keeps_the_tolerance(simulati
     assert taken["yes"] <= 2.0 < taken["no"]
 
 
-@pytest.mark.parametrize("precondition,molecules,tolerance", [("none", 0, 1e-2), ("clump", 1, 1e-2), ("sparse", 0, 1e-2),
-                                                             ("auto", 0, 1e-6), ("auto", 0, 1e-3), ("auto", 1, 1e-3)])
+@pytest.mark.parametrize("precondition,molecules,tolerance",
+                         [("none", 0, 1e-2), ("clump", 1, 1e-2), ("sparse", 0, 1e-2),
+                         ("auto", 0, 1e-6), ("auto", 0, 1e-3), ("auto", 1, 1e-3)])
 def test_warm_start_survives_a_restart(simulation, tmp_path, precondition, molecules, tolerance):
-    """At a loose tolerance the answer shows where the solver began and what preconditioned it. The factor is not in the restart
-    file, but where it was made: after 40 steps it is worn and not yet made anew."""
-    words = f"cut_off_distance inf visc {suspensions.ETA} algorithm 2 relative_tolerance {tolerance} precondition {precondition}"
+    """At a loose tolerance the answer shows where the solver began and what preconditioned it. The factor is not in the
+    restart file, but where it was made: after 40 steps it is worn and not yet made anew."""
+    words = (f"cut_off_distance inf visc {suspensions.ETA} algorithm 2 relative_tolerance {tolerance} precondition "
+             f"{precondition}")
     spheres = flocs(4, 6, 8.0)
     spheres.molecule *= molecules
     rest = ["fix drag all stokes_dynamics", "fix pull all gravity 1.5 vector 0.3 0 -1", "fix move all nve/sphere"]
@@ -119,20 +122,23 @@ def test_warm_start_survives_a_restart(simulation, tmp_path, precondition, molec
     sim.command(f"write_restart {tmp_path}/mid")
     sim.run(40)
     expected = np.hstack([sim.x, sim.v, sim.drag])
-    sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", "timestep 0.002"] + rest)
+    sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", "timestep 0.002"] +
+                                rest)
     sim.run(40)
     assert np.abs(np.hstack([sim.x, sim.v, sim.drag]) - expected).max() < 1e-10
 
 
-# What a solve was asked before, of the same spheres: forces from velocities that are nearly those asked for then; motions with
-# random numbers that are small
+# What a solve was asked before, of the same spheres: forces from velocities that are nearly those asked for then;
+# motions with random numbers that are small
 ASKED_BEFORE = {"forces": ["fix before all stokes_dynamics apply no"],
-                "noise": ["fix before all stokes_dynamics/overdamped scheme midpoint temperature 1e-5 7 noise_tolerance 0.1"]}
+                "noise": ["fix before all stokes_dynamics/overdamped scheme midpoint temperature 1e-5 7 "
+                          "noise_tolerance 0.1"]}
 
 
 @pytest.mark.parametrize("before", ASKED_BEFORE)
 def test_what_a_solve_was_asked_before_is_no_guess_of_other_questions(simulation, before):
-    """At a loose tolerance the answer shows where the solver began: it does so from nothing, as without a run before."""
+    """At a loose tolerance the answer shows where the solver began: it does so from nothing, as without a run
+    before."""
     x = np.array([(0, 0, 0), (2.3, 0, 0), (0, 2.4, 0.3), (2.2, 2.3, 0.9)])
     words = f"cut_off_distance inf visc {ETA} multiblob 12 lubrication yes relative_tolerance 0.05"
     pull, move = "fix pull all addforce 0.3 0.1 -1", "fix move all stokes_dynamics/overdamped"

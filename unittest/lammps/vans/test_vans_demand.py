@@ -1,7 +1,8 @@
 """fix hydro/vans between runs: fix_modify average, solve, given; and fluctuations of a given intensity."""
 import numpy as np
 import pytest
-from vans_helper import Scene, bed_script, close_scenes, dump_rows, run_lmp, write_columns  # noqa: F401 (close_scenes is a fixture)
+# close_scenes is a fixture
+from vans_helper import Scene, bed_script, close_scenes, dump_rows, run_lmp, write_columns  # noqa: F401
 
 N, WATER = 201, "fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61"
 
@@ -17,7 +18,8 @@ def state(s):
     return profiles + [s.atoms("x"), s.atoms("v"), s.atoms("f_vans")]
 
 
-@pytest.mark.parametrize("keywords", ["", "conserve no", "felt volume", "classes yes sidewall 0.03 1", "fluctuation correlated 5 0.01 renewal 5e-4", "fluctuation depth 5 0.01"])
+@pytest.mark.parametrize("keywords", ["", "conserve no", "felt volume", "classes yes sidewall 0.03 1",
+                                      "fluctuation correlated 5 0.01 renewal 5e-4", "fluctuation depth 5 0.01"])
 def test_average_and_solve_on_demand_are_those_of_a_run(mesh, keywords):
     """Three intervals of 20 steps with a coupling at the end of each, by itself or by fix_modify."""
     seen = []
@@ -33,18 +35,21 @@ def test_average_and_solve_on_demand_are_those_of_a_run(mesh, keywords):
 
 
 def test_solves_on_demand_keep_the_momentum(mesh):
-    """Couplings when the user says, at uneven times; in between the water moves on alone past grains that are held, which counts as given to others."""
+    """Couplings when the user says, at uneven times; in between the water moves on alone past grains that are held,
+    which counts as given to others."""
     s = Scene.of(bed_script(mesh, every=100000))
     s.do("unfix gravity", "pair_style zero 0.006", "pair_coeff * *", "run 0")
 
     def account():
         grains = (s.atoms("rmass") * s.atoms("v")[:, 0])[s.atoms("type") == 2].sum()
         outside = [s.number(k, "vans") for k in ("driving", "bottom", "walls", "surface")]
-        return grains + s.number("momentum", "vans") + s.number("transit", "vans") + s.number("others", "vans") - sum(outside), np.abs(outside).sum()
+        return grains + s.number("momentum", "vans") + s.number("transit", "vans") + s.number("others", "vans") - sum(
+            outside), np.abs(outside).sum()
 
     start, _ = account()
     for k, steps in enumerate((50, 33, 40, 100)):
-        s.do(f"run {steps}", "fix_modify vans solve 1e-3 2e-5", f"fix_modify vans solve {steps * 1e-5} 1e-5", "fix_modify vans solve 3e-4 1e-5")
+        s.do(f"run {steps}", "fix_modify vans solve 1e-3 2e-5", f"fix_modify vans solve {steps * 1e-5} 1e-5",
+             "fix_modify vans solve 3e-4 1e-5")
         end, moved = account()
         assert abs(end - start) < 1e-11 * moved
     assert moved > 1e-4
@@ -54,7 +59,8 @@ def test_solves_on_demand_keep_the_momentum(mesh):
 def test_given_between_runs_is_given_at_the_start(tmp_path, mesh):
     """Forces with couple none; the stream with couple fluid."""
     z = (np.arange(N) + 0.5) / N
-    first, second = (write_columns(tmp_path / name, phi, 0.1 * z, 2e-6 * (1 - z)) for name, phi in (("a", 0.3 * (1 - z)), ("b", 0.5 * (1 - z) ** 2)))
+    first, second = (write_columns(tmp_path / name, phi, 0.1 * z, 2e-6 * (1 - z))
+                     for name, phi in (("a", 0.3 * (1 - z)), ("b", 0.5 * (1 - z) ** 2)))
     for couple in ("none", "fluid radius 0.003 solve 0.01 1e-4"):
         seen = []
         for given, asked in ((first, [f"fix_modify vans given {second}"]), (second, [])):
@@ -117,30 +123,33 @@ def test_bad_input(tmp_path, monkeypatch, words, couple, message):
     (tmp_path / "full").write_text("0.1 0 0\n" * 3 + "1.2 0 0\n" + "0.1 0 0\n" * 16)
     s = Scene()
     s.spheres([[0.01, 0.01, 0.0055]], np.zeros((1, 3)), 0.001)
-    s.do("variable atoms atom x", f"fix h all hydro/vans 1 mesh 20 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 couple {couple}", "run 0")
+    s.do("variable atoms atom x",
+         f"fix h all hydro/vans 1 mesh 20 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 couple {couple}", "run 0")
     with pytest.raises(Exception, match="fix_modify h: " + message):
         s.do("fix_modify h " + words)
 
 
-# --- intensity ----------------------------------------------------------------------------------------------------------------
+# --- intensity --------------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("kind", ["number", "variable", "file"])
 def test_the_intensity_given_is_that_of_the_fluctuations(tmp_path, kind):
-    """Each component of u' that 40 000 grains see has the rms that the user gives, per slice where a file gives it; water at rest, no stress. The
-    sampling error of a variance is sqrt(2/n): five of them."""
+    """Each component of u' that 40 000 grains see has the rms that the user gives, per slice where a file gives it;
+    water at rest, no stress. The sampling error of a variance is sqrt(2/n): five of them."""
     n, cells = 40000, 20
     u_star = 0.01 * (1 + np.arange(cells)) if kind == "file" else np.full(cells, 0.07)
     words = {"number": "0.07", "variable": "v_i", "file": "file " + write_columns(tmp_path / "i", u_star)}[kind]
     s = Scene(extra=["neigh_modify one 10000 page 100000", "comm_modify cutoff 0.0001", "pair_style none"])
-    s.do("variable i equal 0.01*7", f"region r block 0 0.02 0 0.02 0.0001 {0.001 * cells - 0.0001} units box", f"create_atoms 1 random {n} 7 r",
-         "set group all diameter 1e-5 density 2500", f"fix h all hydro/vans 1 mesh {cells} 0.001 0 fluid 1000 0.001 gravity 0 0 -9.8 couple none stream rest "
+    s.do("variable i equal 0.01*7", f"region r block 0 0.02 0 0.02 0.0001 {0.001 * cells - 0.0001} units box",
+         f"create_atoms 1 random {n} 7 r", "set group all diameter 1e-5 density 2500",
+         f"fix h all hydro/vans 1 mesh {cells} 0.001 0 fluid 1000 0.001 gravity 0 0 -9.8 couple none stream rest "
          f"fluctuation uncorrelated 11 0 intensity {words}", "run 0")
     slices = (s.atoms("x")[:, 2] / 0.001).astype(int)
     seen = s.atoms("f_h")[:, 3:] / u_star[slices][:, None]
     for d in range(3):
         assert abs((seen[:, d] ** 2).mean() - 1) < 5 * np.sqrt(2 / n)
         assert abs(seen[:, d].mean()) < 5 / np.sqrt(n)
-        assert max(abs((seen[slices == k, d] ** 2).mean() - 1) / np.sqrt(2 / (slices == k).sum()) for k in range(cells)) < 5
+        assert max(abs((seen[slices == k, d] ** 2).mean() - 1) / np.sqrt(2 / (slices == k).sum())
+                   for k in range(cells)) < 5
     s.close()
 
 
@@ -160,7 +169,8 @@ def test_bad_intensity(tmp_path, monkeypatch, words, message):
     s.spheres([[0.01, 0.01, 0.0055]], np.zeros((1, 3)), 0.001)
     with pytest.raises(Exception, match=message):
         s.do("variable minus equal -2", "variable nan equal 0*exp(999)",
-             f"fix h all hydro/vans 1 mesh 20 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 fluctuation correlated 3 0 intensity {words}", "run 0")
+             "fix h all hydro/vans 1 mesh 20 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 fluctuation correlated 3 0 "
+             f"intensity {words}", "run 0")
 
 
 def test_intensity_without_fluctuations():
@@ -172,8 +182,8 @@ def test_the_surface_stays_where_it_was_when_the_water_would_rise_above_the_mesh
     """Who catches the error may go on: the next solve says the same."""
     s = Scene()
     s.spheres([(0.005, 0.005, 0.003)], [(0, 0, 0)], 0.003)
-    s.do("fix h all hydro/vans 1 mesh 10 0.002 0 fluid 1000 0.001 gravity 0.05 0 -9.81 turbulence none surface follow 0.012 "
-         "discharge 5 adjust depth 1e-4")
+    s.do("fix h all hydro/vans 1 mesh 10 0.002 0 fluid 1000 0.001 gravity 0.05 0 -9.81 turbulence none "
+         "surface follow 0.012 discharge 5 adjust depth 1e-4")
     for _ in range(2):
         with pytest.raises(Exception, match="above the mesh"):
             s.do("run 200")

@@ -1,7 +1,8 @@
 """fix hydro/vans: one grain, closed forms of the fluid, clumps, and what LAMMPS offers around it."""
 import numpy as np
 import pytest
-from vans_helper import Scene, bed_script, close_scenes, run_lmp, write_columns  # noqa: F401 (close_scenes is a fixture)
+# close_scenes is a fixture
+from vans_helper import Scene, bed_script, close_scenes, run_lmp, write_columns  # noqa: F401
 
 WATER = "fluid 1030 0.0017 gravity 0 0 -9.7"
 
@@ -18,7 +19,8 @@ def settle(tmp_path, phi, drag="hindrance 3.1"):
     given = write_columns(tmp_path / "given", np.full(40, phi), np.zeros(40), np.zeros(40))
     s = Scene(box=(0, 0.02, 0, 0.02, 0, 4))
     s.spheres([[0.01, 0.01, 3.9]], [[0, 0, 0]], a, density=2570)
-    s.do("timestep 2e-4", f"fix h all hydro/vans 1 mesh 40 0.1 0 {WATER} couple none given file {given} {drag} stream rest", "fix g all gravity 9.7 vector 0 0 -1",
+    s.do("timestep 2e-4", f"fix h all hydro/vans 1 mesh 40 0.1 0 {WATER} couple none given file {given} "
+                          f"{drag} stream rest", "fix g all gravity 9.7 vector 0 0 -1",
          "fix m all nve/sphere", "run 10000")
     v = -s.atoms("v")[0, 2]
     s.close()
@@ -31,7 +33,8 @@ def test_terminal_velocity(tmp_path):
 
 @pytest.mark.parametrize("phi", [0.2, 0.45])
 def test_hindered_settling(tmp_path, phi):
-    """Terminal velocity with the drag (1 - phi)^-3.1 times as large, and from it the exponent: the ratio of the two drags at the speeds reached."""
+    """Terminal velocity with the drag (1 - phi)^-3.1 times as large, and from it the exponent: the ratio of the two
+    drags at the speeds reached."""
     v = settle(tmp_path, phi)
     assert abs(v / terminal_velocity(0.0011, (1 - phi) ** -3.1) - 1) < 1e-6
     B = 24.4 * 0.0017 / 1030 / 0.0022
@@ -52,7 +55,8 @@ def test_settling_in_a_bed_by_ergun(tmp_path, law, phi):
 def test_poiseuille():
     """Discrete closed form u = -dpdx/(2 eta) (z (H-z) + dz^2/4), 1e-10 of the largest."""
     s = Scene()
-    s.do("fix h all hydro/vans 1 mesh 26 0.04 0 fluid 1000 0.001 gravity 0 0 -9.81 couple fluid turbulence none surface speed 0 pressure_gradient -0.1 solve 1e7 1e4", "run 1")
+    s.do("fix h all hydro/vans 1 mesh 26 0.04 0 fluid 1000 0.001 gravity 0 0 -9.81 couple fluid turbulence none "
+         "surface speed 0 pressure_gradient -0.1 solve 1e7 1e4", "run 1")
     z, u = s.column("z", 26)[:25], s.column("u", 26)[:25]
     exact = 0.1 / 0.002 * (z * (1 - z) + 0.04 ** 2 / 4)
     assert np.abs(u - exact).max() < 1e-10 * exact.max()
@@ -60,11 +64,13 @@ def test_poiseuille():
 
 
 def test_uneven_mesh(tmp_path):
-    """Edges from a file: Poiseuille between slices that grow; the heights are the file's, and the first edge is the bottom."""
+    """Edges from a file: Poiseuille between slices that grow; the heights are the file's, and the first edge is the
+    bottom."""
     edges = 0.5 + 0.7 * np.linspace(0, 1.02, 103) ** 1.2
     mesh = write_columns(tmp_path / "edges", edges)
     s = Scene()
-    s.do(f"fix h all hydro/vans 1 mesh file {mesh} fluid 1100 0.002 gravity 0 0 -9.81 couple fluid turbulence none surface speed 0 pressure_gradient -0.13 solve 1e7 1e4", "run 1")
+    s.do(f"fix h all hydro/vans 1 mesh file {mesh} fluid 1100 0.002 gravity 0 0 -9.81 couple fluid turbulence none "
+         "surface speed 0 pressure_gradient -0.13 solve 1e7 1e4", "run 1")
     z, u = s.column("z", 102)[:101] - 0.5, s.column("u", 102)[:101]
     H = edges[101] - 0.5
     exact = 0.13 / 0.004 * z * (H - z)
@@ -78,7 +84,8 @@ def test_pressure_gradient_and_surface_speed_from_variables():
     u = []
     for gradient in ("-0.1", "v_p"):
         s = Scene()
-        s.do("variable p equal -0.2", "variable w equal 0.0", f"fix h all hydro/vans 1 mesh 26 0.04 0 fluid 1000 0.001 gravity 0 0 -9.81 couple fluid turbulence none "
+        s.do("variable p equal -0.2", "variable w equal 0.0",
+             f"fix h all hydro/vans 1 mesh 26 0.04 0 fluid 1000 0.001 gravity 0 0 -9.81 couple fluid turbulence none "
              f"surface speed v_w pressure_gradient {gradient} solve 1e7 1e4", "run 1")
         u.append(s.column("u", 26))
         s.close()
@@ -117,13 +124,17 @@ def test_region_and_group_choose_the_grains():
 
 
 def test_overlaps_of_clumps_count_once():
-    """Two equal spheres: the union by the formula of the lens; and as a rigid body that settles under the stream's force on both members."""
+    """Two equal spheres: the union by the formula of the lens; and as a rigid body that settles under the stream's
+    force on both members."""
     a, h = 0.001, 0.0013
     lens = np.pi * (4 * a + h) * (2 * a - h) ** 2 / 12
     for overlap, expected in (("twice", 8 / 3 * np.pi * a ** 3), ("once", 8 / 3 * np.pi * a ** 3 - lens)):
         s = Scene(style="hybrid sphere bond", box=(0, 0.02, 0, 0.02, 0, 0.06))
-        s.spheres([[0.0196, 0.01, 0.015], [0.0196 + h - 0.02, 0.01, 0.015]], np.zeros((2, 3)), a)    # across the periodic border
-        s.do("thermo_style custom step", "set atom 1*2 mol 1", "set atom 2 image 1 NULL NULL", "neigh_modify exclude molecule/intra all", f"fix h all hydro/vans 10 mesh 21 0.001 0 {WATER} couple one stream rest overlap {overlap}",
+        # across the periodic border
+        s.spheres([[0.0196, 0.01, 0.015], [0.0196 + h - 0.02, 0.01, 0.015]], np.zeros((2, 3)), a)
+        s.do("thermo_style custom step", "set atom 1*2 mol 1", "set atom 2 image 1 NULL NULL",
+             "neigh_modify exclude molecule/intra all",
+             f"fix h all hydro/vans 10 mesh 21 0.001 0 {WATER} couple one stream rest overlap {overlap}",
              "fix g all gravity 9.7 vector 0 0 -1", "fix r all rigid/small molecule", "run 200")
         volume = (s.column("phi", 21) * 0.001 * 4e-4).sum()
         assert abs(volume / expected - 1) < 1e-10
@@ -133,7 +144,9 @@ def test_overlaps_of_clumps_count_once():
 
 def test_fix_pour_and_fix_adapt(tmp_path):
     """Grains that fall in and grains that grow are in the averages."""
-    script = bed_script("mesh 200 0.0003 0 fluid 1000 0.001 gravity 0.4905 0 -9.797 profile zero phi_max 0.61", layers=0).replace("0.05 0 -0.99875", "0 0 -1").replace("atom_style sphere", "atom_style sphere 1") + """
+    script = bed_script("mesh 200 0.0003 0 fluid 1000 0.001 gravity 0.4905 0 -9.797 profile zero phi_max 0.61",
+                        layers=0)
+    script = script.replace("0.05 0 -0.99875", "0 0 -1").replace("atom_style sphere", "atom_style sphere 1") + """
 region in block 0 0.03 0 0.03 0.03 0.06
 fix pour mobile pour 20 2 4711 region in diam one 0.005 dens 2500 2500 vol 0.2 20
 run 3000
@@ -165,7 +178,8 @@ def test_thermo_numbers(tmp_path):
     u = write_columns(tmp_path / "u", 0.05 * np.arange(22))
     s = Scene()
     s.spheres([[0.005, 0.01, 0.0055], [0.013, 0.01, 0.0072]], [[0.1, 0, 0], [0.3, 0, 0]], 0.0015)
-    s.do(f"fix h all hydro/vans 1 mesh 21 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 couple one profile file {u}", "run 0")
+    s.do(f"fix h all hydro/vans 1 mesh 21 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 couple one profile file {u}",
+         "run 0")
     q = (s.column("phi", 21) * s.column("vx", 21)).sum() * 0.001
     assert abs(s.number("transport") / q - 1) < 1e-13
     # sum of V v over the area
@@ -187,7 +201,8 @@ def test_fluctuations(tmp_path):
     for model, seed in (("correlated", 5), ("uncorrelated", 5), ("correlated", 5), ("correlated", 6)):
         s = Scene(extra=["neigh_modify one 10000 page 100000"])
         s.spheres(x[:n], np.zeros((n, 3)), 1e-5)
-        s.do(f"fix h all hydro/vans 1 mesh 21 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 couple none profile file {u} fluctuation {model} {seed} 0.006", "run 0")
+        s.do(f"fix h all hydro/vans 1 mesh 21 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 couple none profile file {u} "
+             f"fluctuation {model} {seed} 0.006", "run 0")
         stress, fluctuation = s.column("stress", 21), s.atoms("f_h")[:, 3:]
         above = x[:, 2] > 0.006
         assert np.abs(fluctuation[~above]).max() == 0

@@ -1,20 +1,22 @@
-"""fix hydro/vans as a flume has it: viscous slots, clumps, sand, discharge, a surface that moves, settling in a vessel."""
+"""fix hydro/vans as a flume has it: viscous slots, clumps, sand, discharge, a surface that moves, settling in a
+vessel."""
 import numpy as np
 import pytest
-from vans_helper import Scene, bed_script, close_scenes, run_lmp, write_columns  # noqa: F401 (close_scenes is a fixture)
+# close_scenes is a fixture
+from vans_helper import Scene, bed_script, close_scenes, run_lmp, write_columns  # noqa: F401
 
 WATER = "fluid 1000 0.001 gravity 0 0 -9.81"
 
 
-# --- side walls -----------------------------------------------------------------------------------------------------------
+# --- side walls -------------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("nu, gx", [(1e-6, 0.002), (1e-5, 0.05), (1e-4, 0.98), (1e-3, 0.98)])
 def test_a_slow_stream_in_a_slot_is_plane_poiseuille_flow(nu, gx):
     """U = gx W^2/(12 nu) in the mean over the width, far from the bottom."""
     W = 0.0065
     s = Scene()
-    s.do(f"fix h all hydro/vans 1 mesh 401 0.0025 0 fluid 1000 {1000 * nu} gravity {gx} 0 -9.8 couple fluid turbulence none sidewall {W} 1 "
-         f"solve {50 * W * W / nu / 12} {0.02 * W * W / nu / 12}", "run 1")
+    s.do(f"fix h all hydro/vans 1 mesh 401 0.0025 0 fluid 1000 {1000 * nu} gravity {gx} 0 -9.8 couple fluid turbulence "
+         f"none sidewall {W} 1 solve {50 * W * W / nu / 12} {0.02 * W * W / nu / 12}", "run 1")
     assert abs(s.column("u", 401)[300] / (gx * W * W / 12 / nu) - 1) < 1e-3
     s.close()
 
@@ -23,7 +25,8 @@ def test_walls_take_the_share_of_einstein_vanoni_and_brooks():
     """A stream of given speed and slope: R_w = f_w(U R_w/nu) U^2/(8 g), the share 2 R_w/W, by iteration here."""
     W, g, U = 0.0065, 0.98, 0.5
     s = Scene()
-    s.do(f"fix h all hydro/vans 1 mesh 21 0.001 0 fluid 1000 0.001 gravity {g} 0 -9.8 couple fluid turbulence none sidewall {W} 1",
+    s.do(f"fix h all hydro/vans 1 mesh 21 0.001 0 fluid 1000 0.001 gravity {g} 0 -9.8 couple fluid turbulence none "
+         f"sidewall {W} 1",
          "fix_modify h profile values 0 " + " ".join("%g" % U for _ in range(21)))
     R = W / 2
     for _ in range(200):
@@ -35,7 +38,7 @@ def test_walls_take_the_share_of_einstein_vanoni_and_brooks():
     s.close()
 
 
-# --- grains ---------------------------------------------------------------------------------------------------------------
+# --- grains -----------------------------------------------------------------------------------------------------------
 
 def sphere_drag(a, w):
     return 0.5 * 1000 * np.pi * a * a * (0.44 * w + 24.4e-6 / (2 * a)) * w
@@ -44,13 +47,15 @@ def sphere_drag(a, w):
 @pytest.mark.parametrize("density", [900, 1150])
 @pytest.mark.parametrize("couple", ["one", "none"])
 def test_a_clump_moves_by_its_own_volume(density, couple):
-    """Two spheres a radius apart have 27/16 of the volume of one: with overlap once light clumps rise and heavy ones sink, at the speed where 27/16 of the
-    drag of one is the weight less buoyancy of that volume."""
+    """Two spheres a radius apart have 27/16 of the volume of one: with overlap once light clumps rise and heavy ones
+    sink, at the speed where 27/16 of the drag of one is the weight less buoyancy of that volume."""
     a = 0.003
     s = Scene(style="hybrid sphere bond", box=(0, 0.06, 0, 0.06, -4, 4), extra=["thermo_style custom step"])
     s.spheres([[0.03, 0.03, 0], [0.033, 0.03, 0]], np.zeros((2, 3)), a, density * 27 / 32)
-    s.do("set group all mol 1", "neigh_modify exclude molecule/intra all", "timestep 1e-3", "fix m all rigid/small molecule", "fix g all gravity 9.81 vector 0 0 -1",
-         f"fix h all hydro/vans 100 mesh 201 0.04 -4 {WATER} couple {couple} stream rest overlap once hindrance 0", "run 3000")
+    s.do("set group all mol 1", "neigh_modify exclude molecule/intra all", "timestep 1e-3",
+         "fix m all rigid/small molecule", "fix g all gravity 9.81 vector 0 0 -1",
+         f"fix h all hydro/vans 100 mesh 201 0.04 -4 {WATER} couple {couple} stream rest overlap once hindrance 0",
+         "run 3000")
     V = 27 / 16 * 4 / 3 * np.pi * a ** 3
     low, high = 0.0, 1.0
     for _ in range(60):
@@ -61,13 +66,15 @@ def test_a_clump_moves_by_its_own_volume(density, couple):
 
 
 def test_the_water_gets_the_drag_of_grains_of_any_sizes():
-    """conserve no, no classes: the force that the exchange takes from the water is that on the grains, of 6 and 3 mm."""
+    """conserve no, no classes: the force that the exchange takes from the water is that on the grains, of 6 and 3
+    mm."""
     rng = np.random.default_rng(4)
     x = rng.uniform([0, 0, 0.004], [0.02, 0.02, 0.014], (20, 3))
     s = Scene()
     s.spheres(x, np.zeros((20, 3)), np.where(np.arange(20) % 2, 0.003, 0.0015) / 1.5)
     u = " ".join("%g" % (0.02 * k) for k in range(22))
-    s.do("fix h all hydro/vans 1 mesh 21 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 conserve no solve 1e-12 1e-13", f"fix_modify h profile values {u}", "run 1")
+    s.do("fix h all hydro/vans 1 mesh 21 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 conserve no solve 1e-12 1e-13",
+         f"fix_modify h profile values {u}", "run 1")
     taken = (1000 * s.column("b", 21) * (s.column("u", 21) - s.column("vx", 21)) * 0.001 * 4e-4)[:-1].sum()
     assert abs(taken / s.number("drag") - 1) < 1e-6
     s.close()
@@ -75,7 +82,8 @@ def test_the_water_gets_the_drag_of_grains_of_any_sizes():
 
 def test_rules_yade_with_two_sizes_are_told(tmp_path):
     vans = "mesh 200 0.0003 0 fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61 rules yade"
-    assert "radii from 0.0024 to 0.003 are replaced by their mean in the drag on the water" in run_lmp(tmp_path, bed_script(vans) + "run 1\n").stdout
+    assert "radii from 0.0024 to 0.003 are replaced by their mean in the drag on the water" in run_lmp(
+        tmp_path, bed_script(vans) + "run 1\n").stdout
     assert "are replaced by their mean" not in run_lmp(tmp_path, bed_script(vans + " classes yes") + "run 1\n").stdout
 
 
@@ -106,8 +114,8 @@ def test_spheres_of_sand_fall_as_measured():
     d = np.geomspace(1e-4, 1e-2, 9)
     s = Scene(box=(0, 1, 0, 1, -8, 1), extra=["pair_style none", "comm_modify cutoff 0.1"])
     s.spheres([[(k + 0.5) / 9, 0.5, 0.5] for k in range(9)], np.zeros((9, 3)), d / 2, 2650)
-    s.do("timestep 2e-4", f"fix h all hydro/vans 1 mesh 10 0.7 -6.5 {WATER} couple none stream rest drag brown_lawler", "fix g all gravity 9.81 vector 0 0 -1",
-         "fix m all nve/sphere", "run 12000")
+    s.do("timestep 2e-4", f"fix h all hydro/vans 1 mesh 10 0.7 -6.5 {WATER} couple none stream rest drag brown_lawler",
+         "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere", "run 12000")
     w = -s.atoms("v")[:, 2]
     Re = w * d / 1e-6
     measured = np.ones(9)
@@ -124,22 +132,28 @@ def test_added_mass_is_carried_along():
     """A light grain set free: m dv/dt = (rho V - m) g - C rho V dv/dt. 1e-3: the drag of the first steps."""
     s = Scene()
     s.spheres([[0.01, 0.01, 0.05]], np.zeros((1, 3)), 0.003, 1200)
-    s.do("timestep 1e-5", f"fix h all hydro/vans 1 mesh 100 0.001 0 {WATER} couple none stream rest added_mass 0.5", "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere", "run 100")
+    s.do("timestep 1e-5", f"fix h all hydro/vans 1 mesh 100 0.001 0 {WATER} couple none stream rest added_mass 0.5",
+         "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere", "run 100")
     assert abs(s.atoms("v")[0, 2] / (-(1200 - 1000) / (1200 + 500) * 9.81 * 1e-3) - 1) < 2e-3
     s.close()
 
 
-@pytest.mark.parametrize("keywords", ["gravity 0 0 -9.81 pressure_gradient -200", "gravity 0 0 -9.81 pressure_gradient v_p", "gravity 0 0 -9.81 discharge v_q",
+@pytest.mark.parametrize("keywords", ["gravity 0 0 -9.81 pressure_gradient -200",
+                                      "gravity 0 0 -9.81 pressure_gradient v_p", "gravity 0 0 -9.81 discharge v_q",
                                       "gravity 0.05 0 -9.81 discharge v_q"])
 def test_a_pressure_that_drives_the_water_drives_grains_in_it_too(keywords):
-    """Grains as dense as inviscid water go with it: both gain dp/dx/rho, without any slip. Where the discharge is held what it takes beyond gravity is a
-    pressure; grains feel it from the next coupling on. What gravity does to the grains is the business of fix gravity."""
+    """Grains as dense as inviscid water go with it: both gain dp/dx/rho, without any slip. Where the discharge is held
+    what it takes beyond gravity is a pressure; grains feel it from the next coupling on. What gravity does to the
+    grains is the business of fix gravity."""
     s = Scene()
-    s.spheres([[0.01, 0.01, 0.0305], [0.005, 0.01, 0.0605], [0.01, 0.003, 0.0905]], np.zeros((3, 3)), [0.001, 0.002, 0.003], 1000)
+    s.spheres([[0.01, 0.01, 0.0305], [0.005, 0.01, 0.0605], [0.01, 0.003, 0.0905]], np.zeros((3, 3)),
+              [0.001, 0.002, 0.003], 1000)
     acceleration = 0.2
-    s.do("timestep 1e-4", "variable p equal -100-100", f"variable q equal {acceleration}*v_water*step*dt", "variable water equal 0.1", "fix m all nve/sphere")
+    s.do("timestep 1e-4", "variable p equal -100-100", f"variable q equal {acceleration}*v_water*step*dt",
+         "variable water equal 0.1", "fix m all nve/sphere")
     s.do(f"fix h all hydro/vans 1 mesh 101 0.001 0 fluid 1000 1e-9 turbulence none {keywords}", "run 0")
-    s.do(f"variable water equal {s.number('volume')}", "fix g all gravity 9.81 vector 0 0 -1" if "0.05" not in keywords else f"fix g all gravity {np.hypot(0.05, 9.81)} vector 0.05 0 -9.81", "run 200")
+    s.do(f"variable water equal {s.number('volume')}", "fix g all gravity 9.81 vector 0 0 -1" if "0.05" not in keywords
+         else f"fix g all gravity {np.hypot(0.05, 9.81)} vector 0.05 0 -9.81", "run 200")
     t = 200 * 1e-4
     u, v = s.column("u", 101)[40], s.atoms("v")[:, 0]
     late = 3 if "discharge" in keywords else 0
@@ -150,13 +164,14 @@ def test_a_pressure_that_drives_the_water_drives_grains_in_it_too(keywords):
     s.close()
 
 
-# --- water ----------------------------------------------------------------------------------------------------------------
+# --- water ------------------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("keywords", ["couple fluid", "couple two conserve no"])
 def test_the_books_are_kept_without_grains_too(keywords):
     """Momentum of the water = driving + bottom + walls + surface - what others got."""
     s = Scene()
-    s.do(f"fix h all hydro/vans 1 mesh 101 0.001 0 fluid 1000 0.001 gravity 0.1 0 -9.8 {keywords} sidewall 0.05 1 solve 1 0.01", "run 3")
+    s.do(f"fix h all hydro/vans 1 mesh 101 0.001 0 fluid 1000 0.001 gravity 0.1 0 -9.8 {keywords} sidewall 0.05 "
+         "1 solve 1 0.01", "run 3")
     got = sum(s.number(k) for k in ("driving", "bottom", "walls", "surface")) - s.number("others")
     assert s.number("driving") > 0 and abs(s.number("momentum") / got - 1) < 1e-12
     s.close()
@@ -168,7 +183,8 @@ def test_gravity_may_change_in_a_run():
     for gravity, asked in (("0.1 0 -9.8", []), ("v_g 0 -9.8", []), ("0.05 0 -9.8", ["fix_modify h gravity 0.2 0 v_z"])):
         s = Scene()
         s.spheres([[0.01, 0.01, 0.0155]], [[0, 0, 0]], 1e-5)
-        s.do("variable g equal 0.2", "variable z equal -4.9", f"fix h all hydro/vans 1 mesh 21 0.001 0 fluid 1000 0.1 gravity {gravity} turbulence none solve 100 0.1",
+        s.do("variable g equal 0.2", "variable z equal -4.9",
+             f"fix h all hydro/vans 1 mesh 21 0.001 0 fluid 1000 0.1 gravity {gravity} turbulence none solve 100 0.1",
              *asked, "run 0", "run 1")
         u.append(s.column("u", 21))
         if asked:
@@ -178,9 +194,11 @@ def test_gravity_may_change_in_a_run():
 
 
 def test_discharge_is_held():
-    """Laminar stream over a plane: q = g H^3/(3 nu), from which the slope is known; q itself to rounding, also when it changes in a run."""
+    """Laminar stream over a plane: q = g H^3/(3 nu), from which the slope is known; q itself to rounding, also when it
+    changes in a run."""
     s = Scene()
-    s.do("variable q equal 1e-4*(1+step)", "fix h all hydro/vans 1 mesh 201 0.0001 0 fluid 1000 0.1 gravity 0 0 -9.8 couple fluid turbulence none discharge v_q solve 100 0.1")
+    s.do("variable q equal 1e-4*(1+step)", "fix h all hydro/vans 1 mesh 201 0.0001 0 fluid 1000 0.1 gravity 0 0 -9.8 "
+                                           "couple fluid turbulence none discharge v_q solve 100 0.1")
     for step in (1, 2):
         s.do("run 1")
         assert abs(s.number("discharge") / (1e-4 * (1 + step)) - 1) < 1e-12
@@ -189,7 +207,8 @@ def test_discharge_is_held():
 
 
 def test_the_discharge_over_a_moving_bed_is_held():
-    s = Scene.of(bed_script("mesh 201 0.0003 0 fluid 1000 0.001 gravity 0 0 -9.81 phi_max 0.61 discharge 0.015 surface follow 0.05"))
+    s = Scene.of(bed_script("mesh 201 0.0003 0 fluid 1000 0.001 gravity 0 0 -9.81 phi_max 0.61 discharge 0.015 "
+                            "surface follow 0.05"))
     for _ in range(5):
         s.do("run 40")
         assert abs(s.number("discharge", "vans") / 0.015 - 1) < 1e-12
@@ -197,11 +216,13 @@ def test_the_discharge_over_a_moving_bed_is_held():
 
 
 def test_the_surface_follows_and_the_water_stays():
-    """Grains swell to twice their volume: the water keeps its volume to rounding, and the surface rises by what was added."""
+    """Grains swell to twice their volume: the water keeps its volume to rounding, and the surface rises by what was
+    added."""
     s = Scene(style="sphere 1")
     s.spheres(np.random.default_rng(1).uniform([0, 0, 0.004], [0.02, 0.02, 0.009], (10, 3)), np.zeros((10, 3)), 0.001)
     s.do("variable d equal 0.002*2^(step/30/3)", "fix a all adapt 1 atom diameter v_d", "timestep 1e-9",
-         "fix h all hydro/vans 1 mesh 41 0.0005 0 fluid 1000 0.001 gravity 0.5 0 -9.8 phi_max 0.9 solve 0.01 1e-3 surface follow 0.0149", "run 0")
+         "fix h all hydro/vans 1 mesh 41 0.0005 0 fluid 1000 0.001 gravity 0.5 0 -9.8 phi_max 0.9 solve 0.01 1e-3 "
+         "surface follow 0.0149", "run 0")
     volume, surface, V = s.number("volume"), s.number("elevation"), 10 * 4 / 3 * np.pi * 1e-9
     assert abs(surface - 0.0149) < 1e-15 and abs(volume - (0.0149 - V / 4e-4)) < 1e-15
     for step in range(30):
@@ -213,16 +234,17 @@ def test_the_surface_follows_and_the_water_stays():
 
 
 def test_the_depth_follows_the_discharge():
-    """A laminar stream down a slope of given gx: the depth comes to that of q = gx H^3/(3 nu), and q to what was asked, from too little water and from
-    too much. One grain far too small to matter, since the surface moves with the averages."""
+    """A laminar stream down a slope of given gx: the depth comes to that of q = gx H^3/(3 nu), and q to what was asked,
+    from too little water and from too much. One grain far too small to matter, since the surface moves with the
+    averages."""
     nu, gx, q = 1e-3, 2.0, 1e-4
     H = (3 * nu * q / gx) ** (1 / 3)
     for start in (0.7, 1.4):
         s = Scene()
         s.spheres([[0.01, 0.01, 2e-4]], np.zeros((1, 3)), 1e-5)
         dz = H / 80
-        s.do(f"fix h all hydro/vans 1 mesh 161 {dz} 0 fluid 1000 1 gravity {gx} 0 -9.8 turbulence none discharge {q} adjust depth 0.005 surface follow {start * H} "
-             "solve 0.01 1e-3", "run 600")
+        s.do(f"fix h all hydro/vans 1 mesh 161 {dz} 0 fluid 1000 1 gravity {gx} 0 -9.8 turbulence none discharge {q} "
+             f"adjust depth 0.005 surface follow {start * H} solve 0.01 1e-3", "run 600")
         assert abs(s.number("discharge") / q - 1) < 1e-6
         assert abs(s.number("elevation") / H - 1) < 1e-3    # order dz^2
         assert s.number("drive") == gx
@@ -230,9 +252,9 @@ def test_the_depth_follows_the_discharge():
 
 
 def test_turbulence_spreads_sinking_grains_as_rouse_has_it():
-    """The stream kappa u_star z (1 - z/H), u' of the Langevin walk, grains that sink at w: their number falls with the height as
-    [(H - z)/z]^(w schmidt/(kappa u_star)). The exponent is the one for which the mean of ln((H - z)/z) between 0.1 and 0.8 H is that of the grains
-    there; its sampling error is 3 %."""
+    """The stream kappa u_star z (1 - z/H), u' of the Langevin walk, grains that sink at w: their number falls with the
+    height as [(H - z)/z]^(w schmidt/(kappa u_star)). The exponent is the one for which the mean of ln((H - z)/z)
+    between 0.1 and 0.8 H is that of the grains there; its sampling error is 3 %."""
     n, cells, H, u_star, kappa, schmidt, a = 2000, 200, 0.1, 0.05, 0.41, 0.5, 1e-4
     rouse = 0.6
     w = rouse * kappa * u_star / schmidt
@@ -242,10 +264,13 @@ def test_turbulence_spreads_sinking_grains_as_rouse_has_it():
     Re = 2 * a * w / 1e-5
     density = 1000 + 6 * np.pi * 1e-2 * a * w * (1 + 0.15 * Re ** 0.687) / (9.81 * 4 / 3 * np.pi * a ** 3)
     s = Scene(box=(0, 1, 0, 1, -0.01, 0.2), extra=["pair_style none", "comm_modify cutoff 0.01"])
-    s.do(f"region r block 0 1 0 1 {0.02 * H} {0.98 * H}", f"create_atoms 1 random {n} 11 r", f"set group all diameter {2 * a} density {density:.10g}", "timestep 2e-4",
-         f"fix h all hydro/vans 5 mesh {cells + 1} {H / cells} 0 fluid 1000 1e-2 gravity 0.5 0 -9.81 couple none stream rest turbulence parabolic "
-         f"drag schiller_naumann fluctuation langevin 3 -1 schmidt {schmidt}", "fix_modify h profile values " + " ".join("%.8g" % v for v in u),
-         "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere", f"fix walls all wall/reflect zlo {0.02 * H} zhi {0.98 * H}", "run 200", "timestep 1e-3", "run 5000")
+    s.do(f"region r block 0 1 0 1 {0.02 * H} {0.98 * H}", f"create_atoms 1 random {n} 11 r",
+         f"set group all diameter {2 * a} density {density:.10g}", "timestep 2e-4",
+         f"fix h all hydro/vans 5 mesh {cells + 1} {H / cells} 0 fluid 1000 1e-2 gravity 0.5 0 -9.81 couple none "
+         f"stream rest turbulence parabolic drag schiller_naumann fluctuation langevin 3 -1 schmidt {schmidt}",
+         "fix_modify h profile values " + " ".join("%.8g" % v for v in u),
+         "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere",
+         f"fix walls all wall/reflect zlo {0.02 * H} zhi {0.98 * H}", "run 200", "timestep 1e-3", "run 5000")
     logs = []
     for _ in range(10):
         s.do("run 500")
@@ -268,16 +293,19 @@ def test_turbulence_spreads_sinking_grains_as_rouse_has_it():
 
 
 def test_light_grains_return_from_the_surface():
-    """Grains without weight in that stream, which mix over its depth within 1 s. Above the surface are only those that have just passed it; without
-    u' that turns there a quarter of them would be, for good."""
+    """Grains without weight in that stream, which mix over its depth within 1 s. Above the surface are only those that
+    have just passed it; without u' that turns there a quarter of them would be, for good."""
     n, cells, H, u_star, kappa, a = 300, 50, 0.1, 0.22, 0.41, 2e-4
     z = H / cells * (np.arange(cells) + 0.5)
     u = u_star / kappa * np.log(np.concatenate([[1e-4], z, [H]]) / 1e-4)
     s = Scene(box=(0, 1, 0, 1, -0.01, 0.2), extra=["pair_style none", "comm_modify cutoff 0.01"])
-    s.do(f"region r block 0 1 0 1 {0.1 * H} {0.9 * H}", f"create_atoms 1 random {n} 11 r", f"set group all diameter {2 * a} density 1000", "timestep 2e-4",
-         f"fix h all hydro/vans 5 mesh {cells + 1} {H / cells} 0 fluid 1000 1e-3 gravity 0.5 0 -9.81 couple none stream rest turbulence parabolic "
-         "drag schiller_naumann fluctuation langevin 3 -1", "fix_modify h profile values " + " ".join("%.8g" % v for v in u),
-         "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere", f"fix floor all wall/reflect zlo {0.02 * H}", "run 200", "timestep 5e-4", "run 8000")
+    s.do(f"region r block 0 1 0 1 {0.1 * H} {0.9 * H}", f"create_atoms 1 random {n} 11 r",
+         f"set group all diameter {2 * a} density 1000", "timestep 2e-4",
+         f"fix h all hydro/vans 5 mesh {cells + 1} {H / cells} 0 fluid 1000 1e-3 gravity 0.5 0 -9.81 couple none "
+         "stream rest turbulence parabolic drag schiller_naumann fluctuation langevin 3 -1",
+         "fix_modify h profile values " + " ".join("%.8g" % v for v in u),
+         "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere", f"fix floor all wall/reflect zlo {0.02 * H}",
+         "run 200", "timestep 5e-4", "run 8000")
     z = s.atoms("x")[:, 2]
     s.close()
     assert (z > 0.8 * H).sum() > 0.05 * n    # they come there
@@ -297,8 +325,8 @@ def brown_lawler(a, density, eta):
 @pytest.mark.parametrize("phi", [0.15, 0.4])
 @pytest.mark.parametrize("d, eta, expected", [(2e-4, 5.8e-3, 0.2), (1e-3, 4.8e-3, 20), (1.85e-3, 1e-3, 500)])
 def test_suspensions_settle_in_a_vessel_by_richardson_and_zaki(d, eta, expected, phi):
-    """A lattice of grains, the same phi in every slice, in a vessel (upflow 0): w_0 (1 - phi)^n, 5 %, with n = 4.65, 4.4 Re^-0.03, 4.4 Re^-0.1, 2.4 of
-    Richardson & Zaki. Held up by that flux they stay where they are."""
+    """A lattice of grains, the same phi in every slice, in a vessel (upflow 0): w_0 (1 - phi)^n, 5 %, with n = 4.65,
+    4.4 Re^-0.03, 4.4 Re^-0.1, 2.4 of Richardson & Zaki. Held up by that flux they stay where they are."""
     h, n, w0 = d * (np.pi / 6 / phi) ** (1 / 3), 9, brown_lawler(d / 2, 2650, eta)
     Re = w0 * d * 1000 / eta
     assert 0.7 < Re / expected < 1.4
@@ -308,8 +336,10 @@ def test_suspensions_settle_in_a_vessel_by_richardson_and_zaki(d, eta, expected,
     for flux, start, speed in ((0.0, 0.7 * hindered, hindered), (hindered, 0.0, 0.0)):
         s = Scene(box=(0, 3 * h, 0, 3 * h, -40 * h, 20 * h), extra=["pair_style none", f"comm_modify cutoff {h}"])
         s.spheres(h * x, np.array([[0, 0, -start]] * len(x)), d / 2, 2650)
-        s.do(f"timestep {0.02 * hindered / 9.81}", f"fix h all hydro/vans 1 mesh 61 {h} {-40 * h} fluid 1000 {eta} gravity 0 0 -9.81 stream rest couple one "
-             f"grains point drag brown_lawler upflow {flux}", "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere", "run 600")
+        s.do(f"timestep {0.02 * hindered / 9.81}",
+             f"fix h all hydro/vans 1 mesh 61 {h} {-40 * h} fluid 1000 {eta} gravity 0 0 -9.81 stream rest couple one "
+             f"grains point drag brown_lawler upflow {flux}", "fix g all gravity 9.81 vector 0 0 -1",
+             "fix m all nve/sphere", "run 600")
         inside = -s.atoms("v")[:, 2].reshape(3, 3, n)[:, :, 3:6].mean()
         print(Re, phi, flux, inside / hindered)
         assert abs(inside - speed) < 0.05 * hindered
@@ -322,8 +352,9 @@ def test_suspensions_settle_in_a_vessel_by_richardson_and_zaki(d, eta, expected,
 
 @pytest.mark.parametrize("d, eta, dt", [(2e-4, 5.8e-3, 1.2e-4), (1e-3, 4.8e-3, 1e-4), (1.85e-3, 1e-3, 1e-4)])
 def test_a_fluidised_bed_expands_by_richardson_and_zaki(d, eta, dt):
-    """Free grains on a floor, at first packed to phi 0.45, in water that rises with w_0 (1 - phi)^n, phi = 0.3: at Re 0.2, 20 and 500 their bed comes to that
-    phi within 5 % and stays there. Slices of three diameters; the highest one, in part empty, makes the bed 8 % higher than its phi."""
+    """Free grains on a floor, at first packed to phi 0.45, in water that rises with w_0 (1 - phi)^n, phi = 0.3: at Re
+    0.2, 20 and 500 their bed comes to that phi within 5 % and stays there. Slices of three diameters; the highest one,
+    in part empty, makes the bed 8 % higher than its phi."""
     h, rng = d * (np.pi / 6 / 0.45) ** (1 / 3), np.random.default_rng(6)
     w0 = brown_lawler(d / 2, 2650, eta)
     Re = w0 * d * 1000 / eta
@@ -331,11 +362,15 @@ def test_a_fluidised_bed_expands_by_richardson_and_zaki(d, eta, dt):
     mass = 2650 * np.pi / 6 * d ** 3
     k = 0.5 * mass * (np.pi / 25 / dt) ** 2
     contact = f"gran/hooke/history {k} NULL {0.43 * np.sqrt(2 * k / mass)} NULL 0.1 1"
-    s = Scene(box=(0, 6 * h, 0, 6 * h, -d, 60 * d), extra=["pair_style " + contact, "pair_coeff * *", f"neighbor {0.3 * d} bin"])
-    x = h * (np.array([[i, j, l] for i in range(6) for j in range(6) for l in range(8)]) + 0.5) + rng.uniform(-0.02 * d, 0.02 * d, (288, 3))
+    s = Scene(box=(0, 6 * h, 0, 6 * h, -d, 60 * d), extra=["pair_style " + contact, "pair_coeff * *",
+                                                           f"neighbor {0.3 * d} bin"])
+    x = h * (np.array([[i, j, l] for i in range(6) for j in range(6) for l in range(8)]) +
+             0.5) + rng.uniform(-0.02 * d, 0.02 * d, (288, 3))
     s.spheres(x, np.zeros((288, 3)), d / 2, 2650)
-    s.do(f"timestep {dt}", f"fix floor all wall/{contact.replace('/hooke', ' hooke', 1)} zplane 0 NULL", "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere",
-         f"fix h all hydro/vans 5 mesh 20 {3 * d} 0 fluid 1000 {eta} gravity 0 0 -9.81 stream rest couple one drag brown_lawler upflow {flux}", f"run {int(70 * d / w0 / dt)}")
+    s.do(f"timestep {dt}", f"fix floor all wall/{contact.replace('/hooke', ' hooke', 1)} zplane 0 NULL",
+         "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere",
+         f"fix h all hydro/vans 5 mesh 20 {3 * d} 0 fluid 1000 {eta} gravity 0 0 -9.81 stream rest couple one drag "
+         f"brown_lawler upflow {flux}", f"run {int(70 * d / w0 / dt)}")
     phi = 288 * np.pi / 6 * d ** 3 / (36 * h * h * 2 * s.atoms("x")[:, 2].mean())
     inside = s.column("phi", 20)[:3]
     print(Re, inside, phi)
@@ -353,8 +388,10 @@ def test_a_bed_in_slices_finer_than_its_grains_is_told_to_break_up(tmp_path):
 def test_a_run_stops_when_its_mean_is_known():
     """A stream that shakes about its mean: fix halt on the error of the steady state; asked anew, it knows nothing."""
     s = Scene()
-    s.do("variable p equal -100*(1+0.3*sin(step*1.7))", "fix h all hydro/vans 1 mesh 21 0.001 0 fluid 1000 0.1 gravity 0 0 -9.8 couple fluid turbulence kz pressure_gradient v_p "
-         "solve 0.1 0.01", "variable e equal f_h[25]/(f_h[24]+1e-99)", "fix stop all halt 1 v_e < 0.02 error continue", "run 3000")
+    s.do("variable p equal -100*(1+0.3*sin(step*1.7))", "fix h all hydro/vans 1 mesh 21 0.001 0 fluid 1000 0.1 gravity "
+         "0 0 -9.8 couple fluid turbulence kz pressure_gradient v_p "
+         "solve 0.1 0.01", "variable e equal f_h[25]/(f_h[24]+1e-99)", "fix stop all halt 1 v_e < 0.02 error continue",
+         "run 3000")
     steps = s.lmp.extract_global("ntimestep")
     assert 16 <= steps < 3000 and 0 < s.number("stress_error") < 0.02 * s.number("mean_stress")
     s.do("unfix stop", "run 500")

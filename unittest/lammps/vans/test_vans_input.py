@@ -1,14 +1,16 @@
 """fix hydro/vans: bad input, each with its own message."""
 import numpy as np
 import pytest
-from vans_helper import Scene, bed_script, close_scenes, run_lmp, write_columns  # noqa: F401 (close_scenes is a fixture)
+# close_scenes is a fixture
+from vans_helper import Scene, bed_script, close_scenes, run_lmp, write_columns  # noqa: F401
 
 GOOD = {"mesh": "20 0.001 0", "fluid": "1000 0.001", "gravity": "0.5 0 -9.8"}
 
 
 def line(every="1", **changes):
     keywords = {**GOOD, **changes}
-    return f"fix h all hydro/vans {every} " + " ".join(f"{key} {value}" for key, value in keywords.items() if value is not None)
+    return f"fix h all hydro/vans {every} " + " ".join(f"{key} {value}" for key, value in keywords.items()
+                                                       if value is not None)
 
 
 BAD = [
@@ -43,7 +45,8 @@ BAD = [
     (dict(classes="0"), "keyword classes: '0' must be >= 1"),
     (dict(classes="1001"), "keyword classes: '1001' must be <= 1000"),
     (dict(classes="2.5"), "keyword classes: '2.5' is not an integer"),
-    (dict(classes="5", class_radii="1 0.001"), "keyword classes: with a number of classes they are bins of equal ratio"),
+    (dict(classes="5", class_radii="1 0.001"),
+     "keyword classes: with a number of classes they are bins of equal ratio"),
     (dict(felt="surface"), "keyword felt: 'surface' is none of: centre, volume"),
     (dict(felt="volume", rules="yade"), "keyword felt is not available with rules yade"),
     (dict(felt="volume", grains="point"), "keyword felt has no effect with grains point"),
@@ -64,8 +67,10 @@ BAD = [
     (dict(overlap="once"), "keyword overlap: molecule IDs are needed"),
     (dict(hindrance="-1"), "keyword hindrance: '-1' must be >= 0"),
     (dict(drag="stokes"), "keyword drag: 'stokes' is none of"),
-    (dict(drag="brown_lawler", rules="yade"), "keyword drag: with rules yade only drag yade and hindrance n are available"),
-    (dict(hindrance="di_felice", rules="yade"), "keyword drag: with rules yade only drag yade and hindrance n are available"),
+    (dict(drag="brown_lawler", rules="yade"),
+     "keyword drag: with rules yade only drag yade and hindrance n are available"),
+    (dict(hindrance="di_felice", rules="yade"),
+     "keyword drag: with rules yade only drag yade and hindrance n are available"),
     (dict(drag="beetstra", rules="yade"), "keyword drag: with rules yade only drag yade and hindrance n are available"),
     (dict(drag="gidaspow", hindrance="3.1"), "keyword hindrance: ergun, gidaspow, beetstra and koch_hill have"),
     (dict(added_mass="0.5", rules="yade"), "keyword added_mass is not available with rules yade"),
@@ -139,7 +144,8 @@ def test_bad_file(tmp_path, monkeypatch, keywords, rows, message):
         Scene().do(line(**keywords))
 
 
-@pytest.mark.parametrize("edges, message", [("0 0.1", "has 2 edges, at least 3 are needed"), ("0 0.1 0.1 0.2", "edge 3 \\(0.1\\) is not above the one before")])
+@pytest.mark.parametrize("edges, message", [("0 0.1", "has 2 edges, at least 3 are needed"),
+                                            ("0 0.1 0.1 0.2", "edge 3 \\(0.1\\) is not above the one before")])
 def test_bad_mesh_file(tmp_path, monkeypatch, edges, message):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "edges").write_text(edges)
@@ -264,7 +270,8 @@ WORKING = ["lj", "si", "cgs", "micro", "nano"]
 
 @pytest.mark.parametrize("units", WORKING + ["real", "metal", "electron"])
 def test_unit_systems(units):
-    """Where force is mass times acceleration the numbers are the same in all systems; elsewhere the fix says where it works."""
+    """Where force is mass times acceleration the numbers are the same in all systems; elsewhere the fix says where it
+    works."""
     s = Scene(units=units, extra=["atom_modify sort 0 0"])
     s.spheres([[0.01, 0.01, 0.0055]], [[0, 0, 0]], 0.001)
     command = line(couple="none", stream="rest", gravity="0 0 -9.8")
@@ -278,7 +285,8 @@ def test_unit_systems(units):
 
 
 def test_two_dimensions_are_refused():
-    s = Scene.of("plugin load stokesdynplugin.so\nunits si\natom_style sphere\ndimension 2\nregion b block 0 1 0 1 -0.1 0.1\ncreate_box 1 b")
+    s = Scene.of("plugin load stokesdynplugin.so\nunits si\natom_style sphere\ndimension 2\n"
+                 "region b block 0 1 0 1 -0.1 0.1\ncreate_box 1 b")
     with pytest.raises(Exception, match="dimension 2: the stream needs three dimensions"):
         s.do(line(couple="none"))
 
@@ -286,7 +294,8 @@ def test_two_dimensions_are_refused():
 @pytest.mark.parametrize("boundary", ["s p f", "p m f"])
 def test_shrink_wrapped_box_needs_an_area(boundary):
     s = Scene(boundary=boundary)
-    with pytest.raises(Exception, match=f"keyword area: the box is shrink-wrapped along {'x' if boundary[0] == 's' else 'y'}"):
+    with pytest.raises(Exception,
+                       match=f"keyword area: the box is shrink-wrapped along {'x' if boundary[0] == 's' else 'y'}"):
         s.do(line())
     s.do(line(area="4e-4"))
 
@@ -305,14 +314,16 @@ def test_restart_with_another_mesh_of_the_same_number(tmp_path, other):
     assert done.returncode != 0 and "the restart file has another mesh" in done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("before, after", [("fluctuation correlated 7 0.01", ""), ("", "fluctuation correlated 7 0.01"), ("conserve no", ""), ("", "added_mass 0.5")])
+@pytest.mark.parametrize("before, after", [("fluctuation correlated 7 0.01", ""), ("", "fluctuation correlated 7 0.01"),
+                                           ("conserve no", ""), ("", "added_mass 0.5")])
 def test_restart_with_other_keywords_says_what_the_grains_lose(tmp_path, before, after):
     vans = "mesh 200 0.0003 0 fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61 "
     done = run_lmp(tmp_path, bed_script(vans + before) + "run 20\nwrite_restart half\n")
     assert done.returncode == 0
     done = run_lmp(tmp_path, restarted(bed_script(vans + after)) + "run 20\n")
     assert done.returncode == 0, done.stdout[-1000:]
-    assert "the restart file was written with other keywords (conserve, overlap, fluctuation or added_mass)" in done.stdout
+    assert ("the restart file was written with other keywords "
+            "(conserve, overlap, fluctuation or added_mass)" in done.stdout)
 
 
 def test_two_fixes_on_one_group_are_told(tmp_path):
@@ -333,11 +344,14 @@ def test_a_solve_of_many_seconds_is_told(tmp_path):
     assert "1e+08 steps of 20 slices in every coupling" in done.stdout and done.returncode == 0
 
 
-# radius, density, fluid, words; is it said, and the Reynolds number of the fall. The first four are ten Cate's spheres in oil.
-FALLS = [(0.0075, 1120, "970 0.373", "", "1.5"), (0.0075, 1120, "965 0.212", "", "4.3"), (0.0075, 1120, "962 0.113", "", "12"),
-         (0.0075, 1120, "960 0.058", "", "32"), (0.0075, 1120, "960 0.058", "drag yade", None), (0.0075, 1120, "960 0.058", "drag brown_lawler", None),
-         (0.0075, 1120, "960 0.058", "rules yade", None), (0.003, 2500, "1000 0.001", "", None), (0.00025, 2650, "1000 0.001", "", "3"),
-         (0.000002, 2650, "1000 0.001", "", None), (0.0075, 960, "960 0.058", "", None)]
+# radius, density, fluid, words; is it said, and the Reynolds number of the fall. The first four are ten Cate's spheres
+# in oil.
+FALLS = [(0.0075, 1120, "970 0.373", "", "1.5"), (0.0075, 1120, "965 0.212", "", "4.3"),
+         (0.0075, 1120, "962 0.113", "", "12"), (0.0075, 1120, "960 0.058", "", "32"),
+         (0.0075, 1120, "960 0.058", "drag yade", None), (0.0075, 1120, "960 0.058", "drag brown_lawler", None),
+         (0.0075, 1120, "960 0.058", "rules yade", None), (0.003, 2500, "1000 0.001", "", None),
+         (0.00025, 2650, "1000 0.001", "", "3"), (0.000002, 2650, "1000 0.001", "", None),
+         (0.0075, 960, "960 0.058", "", None)]
 
 
 @pytest.mark.parametrize("radius, density, fluid, words, Re", FALLS)
@@ -365,7 +379,8 @@ run 0
 
 
 def test_the_default_drag_is_warned_of_by_the_worst_of_thousands_of_sizes(tmp_path):
-    """Two thousand specks of as many sizes, for which the default is right, stand before the one sphere for which it is not."""
+    """Two thousand specks of as many sizes, for which the default is right, stand before the one sphere for which it is
+    not."""
     script = """plugin load stokesdynplugin.so
 units si
 atom_style sphere

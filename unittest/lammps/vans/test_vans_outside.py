@@ -1,24 +1,30 @@
-"""fix hydro/vans beside what others have measured or published: falls in oil and of sand, batch settling, roughness of a bed, hops, grains that stick."""
+"""fix hydro/vans beside what others have measured or published: falls in oil and of sand, batch settling, roughness of
+a bed, hops, grains that stick."""
 import numpy as np
 import pytest
-from vans_helper import Scene, bed_script, close_scenes, run_lmp  # noqa: F401 (close_scenes is a fixture)
+# close_scenes is a fixture
+from vans_helper import Scene, bed_script, close_scenes, run_lmp  # noqa: F401
 
 
 def falls(x, d, density, water, drag, box, steps, dt):
     """Speeds of lone spheres after a time that is long for them."""
     s = Scene(box=box, extra=["pair_style none", "comm_modify cutoff 0.1"])
     s.spheres(x, np.zeros((len(x), 3)), np.asarray(d) / 2, density)
-    s.do(f"timestep {dt}", f"fix h all hydro/vans 1 mesh 10 0.7 -6.5 {water} gravity 0 0 -9.81 couple none stream rest drag {drag}", "fix g all gravity 9.81 vector 0 0 -1",
+    s.do(f"timestep {dt}", f"fix h all hydro/vans 1 mesh 10 0.7 -6.5 {water} gravity 0 0 -9.81 couple none stream "
+                           f"rest drag {drag}", "fix g all gravity 9.81 vector 0 0 -1",
          "fix m all nve/sphere", f"run {steps}")
     w = -s.atoms("v")[:, 2]
     s.close()
     return w
 
 
-@pytest.mark.parametrize("rho, eta, published", [(970, 0.373, 0.038), (965, 0.212, 0.060), (962, 0.113, 0.091), (960, 0.058, 0.128)])
+@pytest.mark.parametrize("rho, eta, published", [(970, 0.373, 0.038), (965, 0.212, 0.060), (962, 0.113, 0.091),
+                                                 (960, 0.058, 0.128)])
 def test_a_sphere_falls_in_oil_as_ten_cate_has_it(rho, eta, published):
-    """15 mm, 1120 kg/m3 (ten Cate et al. 2002, infinite oil by Abraham's formula): 8 %; Clift & Gauvin's fit to measurements: 1.5 %."""
-    w = falls([[0.5, 0.5, 0.5]], [0.015], 1120, f"fluid {rho} {eta}", "brown_lawler", (0, 1, 0, 1, -8, 1), 20000, 2e-4)[0]
+    """15 mm, 1120 kg/m3 (ten Cate et al. 2002, infinite oil by Abraham's formula): 8 %; Clift & Gauvin's fit to
+    measurements: 1.5 %."""
+    w = falls([[0.5, 0.5, 0.5]], [0.015], 1120, f"fluid {rho} {eta}", "brown_lawler", (0, 1, 0, 1, -8, 1), 20000,
+              2e-4)[0]
     fit = published
     for _ in range(300):
         Re = fit * 0.015 * rho / eta
@@ -29,9 +35,11 @@ def test_a_sphere_falls_in_oil_as_ten_cate_has_it(rho, eta, published):
 
 
 def test_sand_falls_by_ferguson_and_church_and_near_others():
-    """0.1 to 5 mm, rho_s 2650, water of 20 C: the law's own closed form R g d^2/(18 nu + (0.75 R g d^3)^0.5) to 1e-5; Soulsby (1997) and Cheng (1997) to 25 %."""
+    """0.1 to 5 mm, rho_s 2650, water of 20 C: the law's own closed form R g d^2/(18 nu + (0.75 R g d^3)^0.5) to 1e-5;
+    Soulsby (1997) and Cheng (1997) to 25 %."""
     d, nu = np.array([1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3]), 1.002e-3 / 998.2
-    w = falls([[(k + 0.5) / 6, 0.5, 0.5] for k in range(6)], d, 2650, "fluid 998.2 0.001002", "ferguson_church", (0, 1, 0, 1, -8, 1), 20000, 1e-4)
+    w = falls([[(k + 0.5) / 6, 0.5, 0.5] for k in range(6)], d, 2650, "fluid 998.2 0.001002", "ferguson_church",
+              (0, 1, 0, 1, -8, 1), 20000, 1e-4)
     R = 2650 / 998.2 - 1
     size = d * (R * 9.81 / nu ** 2) ** (1 / 3)
     soulsby = nu / d * (np.sqrt(10.36 ** 2 + 1.049 * size ** 3) - 10.36)
@@ -54,14 +62,16 @@ SETTLING = {    # closed forms at Re of 1e-5, and how far from the measured spee
 
 @pytest.mark.parametrize("law", SETTLING)
 def test_a_dense_batch_settles_by_its_law_and_near_the_measured_speed(law):
-    """Beads of 0.29 mm in silicone oil at phi 0.49: the interface fell at 6.5e-6 m/s (Pham Van Bang et al. 2006). A lattice in slices of three of its spacings,
-    so that each has the same phi: the closed form to 1 %; beetstra and koch_hill within 10 % of the measured speed."""
+    """Beads of 0.29 mm in silicone oil at phi 0.49: the interface fell at 6.5e-6 m/s (Pham Van Bang et al. 2006). A
+    lattice in slices of three of its spacings, so that each has the same phi: the closed form to 1 %; beetstra and
+    koch_hill within 10 % of the measured speed."""
     d, layers = 2.9e-4, 30
     h = d * (np.pi / 6 / 0.49) ** (1 / 3)
     s = Scene(box=(0, 4 * h, 0, 4 * h, -2 * d, (layers + 3) * h), extra=["pair_style none", f"comm_modify cutoff {h}"])
     x = h * (np.array([[i, j, k] for i in range(4) for j in range(4) for k in range(layers)]) + 0.5)
     s.spheres(x, np.zeros((len(x), 3)), d / 2, 1050)
-    s.do("timestep 2e-5", f"fix h all hydro/vans 20 mesh 11 {3 * h} 0 fluid 950 0.0199975 gravity 0 0 -9.81 couple one stream rest {law} upflow 0",
+    s.do("timestep 2e-5", f"fix h all hydro/vans 20 mesh 11 {3 * h} 0 fluid 950 0.0199975 gravity 0 0 -9.81 couple one "
+                          f"stream rest {law} upflow 0",
          "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere", "run 2000")
     inside = -s.atoms("v")[:, 2].reshape(4, 4, layers)[:, :, 9:21].mean()
     speed, off = SETTLING[law]
@@ -73,8 +83,8 @@ def test_a_dense_batch_settles_by_its_law_and_near_the_measured_speed(law):
 
 
 def over_fixed_grains(d, long, high, density, loose, rough):
-    """The head of an input: a layer of fixed grains of diameter d at heights between -rough and rough, `long` by 6 of them, and above it others that the
-    command `loose` makes; lengths in d."""
+    """The head of an input: a layer of fixed grains of diameter d at heights between -rough and rough, `long` by 6 of
+    them, and above it others that the command `loose` makes; lengths in d."""
     return f"""
 plugin load stokesdynplugin.so
 units si
@@ -97,7 +107,8 @@ set group fixed z v_rough
 """
 
 
-BED = over_fixed_grains(0.006, 6, 16, 2500, "region cloud block 0 6 0 6 1 5\ncreate_atoms 2 random 100 4711 cloud", 0.00275) + """
+BED = over_fixed_grains(0.006, 6, 16, 2500, "region cloud block 0 6 0 6 1 5\ncreate_atoms 2 random 100 4711 cloud",
+                        0.00275) + """
 pair_style gran/hooke/history 2000 NULL 1620 NULL 0.4 1
 pair_coeff * *
 neighbor 0.0015 bin
@@ -121,14 +132,16 @@ set group all vx 0 vy 0 vz 0
 reset_timestep 0
 timestep 0.01
 """
-STREAM = "fix h loose hydro/vans 1 mesh 200 0.00025 0 fluid 1000 0.001 gravity 0.1962 0 -9.81 phi_max 0.61 solve 0.01 1e-4"
+STREAM = ("fix h loose hydro/vans 1 mesh 200 0.00025 0 fluid 1000 0.001 gravity 0.1962 0 -9.81 phi_max 0.61 "
+          "solve 0.01 1e-4")
 
 
 def test_a_fixed_bed_is_as_rough_as_the_page_says():
-    """k_s in diameters, from the speed U of the surface by the logarithmic law U/u* = ln(30 h/k_s)/0.41, where rho u*^2 is the largest stress and h = u*^2/(g S):
-    10 % of the page, at 5 and at 10 diameters of water."""
+    """k_s in diameters, from the speed U of the surface by the logarithmic law U/u* = ln(30 h/k_s)/0.41, where rho u*^2
+    is the largest stress and h = u*^2/(g S): 10 % of the page, at 5 and at 10 diameters of water."""
     s = Scene.of(BED)
-    for words, *page in (("", 0.8, 0.9), ("felt volume", 1.1, 1.3), ("turbulence ni_capart", 1.6, 1.8), ("turbulence rousseau", 10, 13)):
+    for words, *page in (("", 0.8, 0.9), ("felt volume", 1.1, 1.3), ("turbulence ni_capart", 1.6, 1.8),
+                         ("turbulence rousseau", 10, 13)):
         for cells, steps, expected in ((200, 2500, page[0]), (320, 4000, page[1])):
             s.do(STREAM.replace("mesh 200", f"mesh {cells}") + " " + words, f"run {steps}")
             shear, surface = s.number("friction_velocity"), s.column("u", cells)[cells - 1]
@@ -139,7 +152,8 @@ def test_a_fixed_bed_is_as_rough_as_the_page_says():
     s.close()
 
 
-HOPS = over_fixed_grains(0.015, 40, 20, 2650, "region start block 0 40 1 5 2 4\ncreate_atoms 2 random 6 4711 start", 0.0045) + """
+HOPS = over_fixed_grains(0.015, 40, 20, 2650, "region start block 0 40 1 5 2 4\ncreate_atoms 2 random 6 4711 start",
+                         0.0045) + """
 pair_style gran/hooke/history 20000 NULL {damp} NULL 0.4 1
 pair_coeff * *
 neighbor 0.003 bin
@@ -147,7 +161,8 @@ neigh_modify delay 0 every 1 exclude type 1 1 exclude type 2 2
 fix weight loose gravity 9.81 vector 0 0 -1
 timestep 2e-5
 fix move loose nve/sphere
-fix s loose hydro/vans 1 mesh 300 0.001 -0.0075 fluid 1000 0.001 gravity 0 0 -9.81 couple none profile file {profile} stream rest drag brown_lawler felt volume
+fix s loose hydro/vans 1 mesh 300 0.001 -0.0075 fluid 1000 0.001 gravity 0 0 -9.81 couple none &
+  profile file {profile} stream rest drag brown_lawler felt volume
 thermo 1000000
 """
 
@@ -171,8 +186,9 @@ def hops(damp, profile, seconds):
 
 
 def test_measured_hops_of_gravel_lie_between_those_of_hard_and_of_damped_contacts(tmp_path):
-    """15 mm at a Shields number of 0.08 (Nino & Garcia 1994): 0.6 to 1 diameters high and 4 to 8 long. With a restitution of 0 they are lower and shorter,
-    with 0.8 higher and longer: the contact law has to damp for the water."""
+    """15 mm at a Shields number of 0.08 (Nino & Garcia 1994): 0.6 to 1 diameters high and 4 to 8 long. With a
+    restitution of 0 they are lower and shorter, with 0.8 higher and longer: the contact law has to damp for the
+    water."""
     z = np.concatenate([[0], (np.arange(300) + 0.5) * 0.001]) - (0.0075 + 0.25 * 0.015)
     u = np.where(30 * z > 0.015, 0.139 / 0.41 * np.log(np.maximum(30 * z / 0.015, 1)), 0)
     profile = tmp_path / "u.txt"
@@ -182,12 +198,15 @@ def test_measured_hops_of_gravel_lie_between_those_of_hard_and_of_damped_contact
     assert hard[0] > 1.0 and hard[1] > 6, hard
 
 
-@pytest.mark.parametrize("words, said", [("", "li_sawamoto: a bed of fixed grains is about as rough as k_s = 0.9 grain"), ("felt volume", "k_s = 1.2 grain"),
-                                         ("turbulence ni_capart", "k_s = 1.7 grain"), ("turbulence rousseau", "k_s = 12 grain"), ("turbulence kz", None),
-                                         ("couple one", None)])
+@pytest.mark.parametrize("words, said",
+                         [("", "li_sawamoto: a bed of fixed grains is about as rough as k_s = 0.9 grain"),
+                          ("felt volume", "k_s = 1.2 grain"), ("turbulence ni_capart", "k_s = 1.7 grain"),
+                          ("turbulence rousseau", "k_s = 12 grain"), ("turbulence kz", None),
+                          ("couple one", None)])
 def test_the_log_says_how_rough_the_bed_is(tmp_path, words, said):
     """Once, by the law of the run."""
-    done = run_lmp(tmp_path, bed_script("mesh 200 0.0003 0 fluid 1000 0.001 gravity 0.49 0 -9.8 " + words) + "run 0\nrun 0\n")
+    done = run_lmp(tmp_path, bed_script("mesh 200 0.0003 0 fluid 1000 0.001 gravity 0.49 0 -9.8 " + words) +
+                   "run 0\nrun 0\n")
     assert done.returncode == 0 and done.stdout.count("grain diameters; flumes have 1 to 2") == (said is not None)
     assert said is None or said in done.stdout
 
@@ -213,16 +232,18 @@ neighbor 0.0005 bin
 timestep 2e-5
 fix weight loose gravity 9.81 vector 0 0 -1
 fix move loose nve/sphere
-fix water loose hydro/vans 1 mesh 150 0.0002 0 fluid 1000 0.001 gravity 0 0 -9.81 couple none stream rest drag brown_lawler
+fix water loose hydro/vans 1 mesh 150 0.0002 0 fluid 1000 0.001 gravity 0 0 -9.81 couple none stream rest &
+  drag brown_lawler
 run 4000
 print "height $(z[2])"
 """
 
 
-@pytest.mark.parametrize("law, pull, bond, hangs", [("dmt", 4, 0.99, False), ("dmt", 4, 1.01, True), ("jkr", 3, 0.99, False), ("jkr", 3, 1.2, True)])
+@pytest.mark.parametrize("law, pull, bond, hangs", [("dmt", 4, 0.99, False), ("dmt", 4, 1.01, True),
+                                                    ("jkr", 3, 0.99, False), ("jkr", 3, 1.2, True)])
 def test_a_grain_hangs_where_adhesion_bears_its_weight_in_water(tmp_path, law, pull, bond, hangs):
-    """The largest force of the law, 4 or 3 pi gamma a/2, beside (rho_s - rho) g V, the buoyancy being that of the fix. A grain that just touches has 8/9 of
-    it by jkr, so that it hangs at once where that is enough."""
+    """The largest force of the law, 4 or 3 pi gamma a/2, beside (rho_s - rho) g V, the buoyancy being that of the fix.
+    A grain that just touches has 8/9 of it by jkr, so that it hangs at once where that is enough."""
     done = run_lmp(tmp_path, STICK, variables=[("bond", bond), ("law", law), ("pull", pull)])
     height = float(done.stdout.split("\nheight ")[1].split()[0])
     assert (abs(height - 0.018) < 1e-6) == hangs and (height < 0.01) != hangs

@@ -1,7 +1,9 @@
-"""fix hydro/vans against the reference tables, through LAMMPS: forces 1e-12, averages 1e-12, fluid 1e-9 of the largest entry."""
+"""fix hydro/vans against the reference tables, through LAMMPS: forces 1e-12, averages 1e-12, fluid 1e-9 of the largest
+entry."""
 import numpy as np
 import pytest
-from vans_helper import Scene, close_scenes, difference, table, write_columns  # noqa: F401 (close_scenes is a fixture)
+# close_scenes is a fixture
+from vans_helper import Scene, close_scenes, difference, table, write_columns  # noqa: F401
 
 CLOSURES = ["kz", "parabolic", "li_sawamoto", "pore", "rousseau", "ni_capart", "pipe"]
 RULES = ["yade", "consistent"]
@@ -21,8 +23,8 @@ def test_forces(case, rules, tmp_path):
     gravity = " ".join("%.17g" % g for g in header["gravity"])
     s = Scene()
     s.spheres(vectors(spheres, "x", "y", "z"), vectors(spheres, "vx", "vy", "vz"), spheres["radius"])
-    s.do(f"fix h all hydro/vans 1 mesh 60 0.001 0.05 fluid 1000 0.001 gravity {gravity} couple none profile file {u} given file {given} rules {rules} "
-         f"stream {'steady' if header['steadyFlow'][0] else 'rest'}", "run 0")
+    s.do(f"fix h all hydro/vans 1 mesh 60 0.001 0.05 fluid 1000 0.001 gravity {gravity} couple none profile file {u} "
+         f"given file {given} rules {rules} stream {'steady' if header['steadyFlow'][0] else 'rest'}", "run 0")
     F, expected = s.atoms("f_h")[:, :3], vectors(spheres, "fx", "fy", "fz")
     inside = (spheres["z"] >= 0.05) & (spheres["z"] < 0.11)
     assert difference(F[inside], expected[inside]) < 1e-12
@@ -37,7 +39,8 @@ def test_forces(case, rules, tmp_path):
 @pytest.mark.parametrize("rules", RULES)
 @pytest.mark.parametrize("case, classes", [("avg_fine", False), ("avg_twosize", True)])
 def test_averages(case, classes, rules, tmp_path):
-    """phi and velocities of both size classes. The tables' drag contains velocity fluctuations that no keyword sets: it is in the tests of the core."""
+    """phi and velocities of both size classes. The tables' drag contains velocity fluctuations that no keyword sets: it
+    is in the tests of the core."""
     _, spheres = table(case + "_spheres")
     _, profiles = table(case + "_profiles")
     _, expected = table(case + "_profiles" + ("" if rules == "yade" else ".consistent"))
@@ -45,8 +48,9 @@ def test_averages(case, classes, rules, tmp_path):
     given = write_columns(tmp_path / "given", profiles["phi_in"], 0 * profiles["phi_in"], 0 * profiles["phi_in"])
     s = Scene()
     s.spheres(vectors(spheres, "x", "y", "z"), vectors(spheres, "vx", "vy", "vz"), spheres["radius"])
-    s.do(f"fix h all hydro/vans 1 mesh 60 0.001 0.05 fluid 1000 0.001 gravity 0 0 -9.81 couple one profile file {u} given file {given} rules {rules} "
-         f"classes {'yes' if classes else 'no'}", "run 1")    # no integrator: the grains stay; averages at set-up and after step 1
+    s.do(f"fix h all hydro/vans 1 mesh 60 0.001 0.05 fluid 1000 0.001 gravity 0 0 -9.81 couple one profile file {u} "
+         # no integrator: the grains stay; averages at set-up and after step 1
+         f"given file {given} rules {rules} classes {'yes' if classes else 'no'}", "run 1")
     for name in ("phi", "vx", "vy", "vz"):
         assert difference(s.column(name, 60), expected[name + "_2"]) < 1e-12
         for c in range(2 if classes else 0):
@@ -67,15 +71,18 @@ def test_fluid(case, rules, tmp_path):
 
     classes = "phi_c0" in columns
     u = write_columns(tmp_path / "u", columns["u_in"])
-    given = [columns[name] for name in ("phi", "vx", "drag") + (("phi_c0", "drag_c0", "phi_c1", "drag_c1") if classes else ())]
+    given = [columns[name] for name in ("phi", "vx", "drag") + (("phi_c0", "drag_c0", "phi_c1", "drag_c1") if classes
+                                                                else ())]
     given = write_columns(tmp_path / "given", *given)
     closure = CLOSURES[int(key("ilm"))] if key("iturbu") else "none"
     s = Scene()
-    s.do(f"fix h all hydro/vans 1 mesh {int(key('nCell'))} {key('deltaZ')} 0 fluid {key('densFluid')} {key('viscoDyn')} "
-         f"gravity {' '.join('%.17g' % g for g in header['gravity'])} couple fluid profile file {u} given file {given} rules {rules} turbulence {closure} "
-         f"phi_max {key('phiMax')} phi_bed {key('phiBed')} viscosity {['constant', 'einstein', 'power'][int(key('irheolf'))]} "
+    s.do(f"fix h all hydro/vans 1 mesh {int(key('nCell'))} {key('deltaZ')} 0 fluid {key('densFluid')} "
+         f"{key('viscoDyn')} gravity {' '.join('%.17g' % g for g in header['gravity'])} couple fluid profile file {u} "
+         f"given file {given} rules {rules} turbulence {closure} phi_max {key('phiMax')} phi_bed {key('phiBed')} "
+         f"viscosity {['constant', 'einstein', 'power'][int(key('irheolf'))]} "
          f"pressure_gradient {key('dpdx')} radius {key('radiusPart')} solve {key('t_end')} {key('dt')} "
-         + (f"sidewall {key('channelWidth')} {key('fluidFrictionCoef')} " if key("fluidWallFriction") else "") + ("class_radii 2 0.003 0.002" if classes else ""), "run 1")
+         + (f"sidewall {key('channelWidth')} {key('fluidFrictionCoef')} " if key("fluidWallFriction") else "") +
+         ("class_radii 2 0.003 0.002" if classes else ""), "run 1")
     rows = int(key("nCell"))
     assert difference(s.column("u", rows), expected["u_out"][1:]) < 1e-9
     for ours, theirs in (("b", "taufsi"), ("nut", "nut"), ("stress", "stress")):

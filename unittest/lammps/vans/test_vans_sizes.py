@@ -2,7 +2,8 @@
 import numpy as np
 import pytest
 from host import allowed
-from vans_helper import ARRAY, VECTOR, Scene, bed_script, close_scenes, dump_rows, run_lmp, write_columns  # noqa: F401 (close_scenes is a fixture)
+# close_scenes is a fixture
+from vans_helper import ARRAY, VECTOR, Scene, bed_script, close_scenes, dump_rows, run_lmp, write_columns  # noqa: F401
 
 N = 201
 MESH = f"mesh {N} 0.0003 0 fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61"
@@ -39,8 +40,9 @@ def test_more_radii_than_classes_are_sorted_into_bins(radii):
 
 
 def test_bins_have_the_mass_and_momentum_of_the_grains():
-    """100 radii and 7 bins: phi, momentum and drag of the bins add up to those of all grains, slice by slice, 1e-13; the numbers of each bin are those of
-    the grains of its sizes, as numpy has them: Sauter's mean radius, mean height, transport rate."""
+    """100 radii and 7 bins: phi, momentum and drag of the bins add up to those of all grains, slice by slice, 1e-13;
+    the numbers of each bin are those of the grains of its sizes, as numpy has them: Sauter's mean radius, mean height,
+    transport rate."""
     s = Scene()
     R = np.random.default_rng(3)
     a = 0.001 * 4 ** R.uniform(0, 1, 100)
@@ -61,7 +63,8 @@ def test_bins_have_the_mass_and_momentum_of_the_grains():
         mine, V = which == c, a ** 3 * (which == c)
         assert mine.any()
         assert abs(each[c, 0] / (V.sum() / (a[mine] ** 2).sum()) - 1) < 1e-13
-        assert abs(each[c, 1] - (V * x[:, 2]).sum() / V.sum()) < 2e-5     # slices of 3e-4: their middles stand for what is in them
+        # slices of 3e-4: their middles stand for what is in them
+        assert abs(each[c, 1] - (V * x[:, 2]).sum() / V.sum()) < 2e-5
         assert abs(each[c, 2] / (4 / 3 * np.pi * (V * v[:, 0]).sum() / 0.01) - 1) < 1e-12
     assert abs(each[:, 2].sum() / transport - 1) < 1e-13
 
@@ -70,8 +73,9 @@ def test_bins_have_the_mass_and_momentum_of_the_grains():
                                               ("felt volume turbulence rousseau bed_mixing 0.5", 3e-15)],
                          ids=["drag of each grain", "discharge", "one law for all"])
 def test_bins_change_nothing_that_one_class_has(profile, keywords, spread):
-    """The drag that the water gets is that of the grains themselves: 112 radii in no class, one, six or 32 move and slow the water alike, 1e-12. Where b
-    and pores come from the radii of the bins (felt volume, rousseau), that holds when all bins have the radius of all grains."""
+    """The drag that the water gets is that of the grains themselves: 112 radii in no class, one, six or 32 move and
+    slow the water alike, 1e-12. Where b and pores come from the radii of the bins (felt volume, rousseau), that holds
+    when all bins have the radius of all grains."""
     results = []
     for classes in ("no", "1", "6", "yes"):
         s = Scene.of(bed_script(f"{MESH} profile file {profile} classes {classes} {keywords}", layers=7, spread=spread))
@@ -84,7 +88,8 @@ def test_bins_change_nothing_that_one_class_has(profile, keywords, spread):
 
 
 def test_bins_matter_where_the_law_is_that_of_their_radius(profile):
-    """With felt volume b is the law's at the radius of each class: one class of Sauter's mean is not the mean radius of the grains."""
+    """With felt volume b is the law's at the radius of each class: one class of Sauter's mean is not the mean radius of
+    the grains."""
     speeds = []
     for classes in ("no", "6"):
         s = Scene.of(bed_script(f"{MESH} profile file {profile} classes {classes} felt volume", layers=7, spread=0.8))
@@ -99,13 +104,15 @@ LAYOUTS = allowed((1, "on"), (1, "off"), (2, "on"), (4, "off"))
 
 @pytest.mark.ranks(max(ranks for ranks, _ in LAYOUTS))
 def test_many_sizes_are_the_same_on_any_ranks_and_after_a_restart(tmp_path, profile):
-    """112 radii in 6 bins, felt by volume, with the pore length of the bins: positions, velocities, forces and the averages of each bin; a run that goes
-    on from a restart file on two ranks is the one that was not broken."""
-    script = bed_script(f"{MESH} profile file {profile} classes 6 felt volume turbulence rousseau", layers=7, spread=0.7)
+    """112 radii in 6 bins, felt by volume, with the pore length of the bins: positions, velocities, forces and the
+    averages of each bin; a run that goes on from a restart file on two ranks is the one that was not broken."""
+    script = bed_script(f"{MESH} profile file {profile} classes 6 felt volume turbulence rousseau", layers=7,
+                        spread=0.7)
     output = """
 write_dump all custom dump.{0} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[3] modify format float %.17g
 variable z3 equal f_vans[35]
-print "CLASSES $(f_vans[28]:%.17g) $(f_vans[29]:%.17g) $(f_vans[30]:%.17g) $(f_vans[43]:%.17g) $(f_vans[44]:%.17g) $(f_vans[30][11]:%.17g) $(f_vans[30][40]:%.17g)"
+print "CLASSES $(f_vans[28]:%.17g) $(f_vans[29]:%.17g) $(f_vans[30]:%.17g) $(f_vans[43]:%.17g) &
+$(f_vans[44]:%.17g) $(f_vans[30][11]:%.17g) $(f_vans[30][40]:%.17g)"
 """
     result = {}
 
@@ -116,7 +123,8 @@ print "CLASSES $(f_vans[28]:%.17g) $(f_vans[29]:%.17g) $(f_vans[30]:%.17g) $(f_v
         result[name] = dump_rows(tmp_path / f"dump.{name}"), np.array(numbers, float)
 
     for ranks, newton in LAYOUTS:
-        take(f"{ranks}{newton}", script.replace("newton on", "newton " + newton) + "thermo_style custom step f_vans[28]\nrun 300\n", ranks)
+        take(f"{ranks}{newton}", script.replace("newton on", "newton " + newton) +
+             "thermo_style custom step f_vans[28]\nrun 300\n", ranks)
     take("first", script + "run 150\nwrite_restart half\nrun 0\n", 1)
     again = script[:script.index("region box")] + "read_restart half\n" + script[script.index("pair_style"):]
     take("again", again + "run 150\n", 2)
@@ -130,12 +138,15 @@ print "CLASSES $(f_vans[28]:%.17g) $(f_vans[29]:%.17g) $(f_vans[30]:%.17g) $(f_v
 
 
 def test_a_continuous_distribution_runs_and_shows_its_sorting():
-    """5000 grains, each of its own radius (log-normal), larger ones higher up; the mean height of each of 10 bins rises, and the one number for each is
-    what the column of its phi has. Grains that come later, larger than all, belong to the last bin."""
+    """5000 grains, each of its own radius (log-normal), larger ones higher up; the mean height of each of 10 bins
+    rises, and the one number for each is what the column of its phi has. Grains that come later, larger than all,
+    belong to the last bin."""
     s = Scene(box=(0, 0.05, 0, 0.05, -0.01, 0.1))
-    s.do("create_atoms 1 random 5000 51 NULL", "variable d atom 0.001*exp(0.4*normal(0,1,7))", "set group all diameter 0.001", "set group all diameter v_d",
-         "set group all density 2500", "variable z atom 0.01+20*(0.75*mass/(2500*PI))^(1/3)+0.002*random(0,1,3)", "set group all z v_z",
-         f"fix h all hydro/vans 1 mesh {N} 0.0003 0 fluid 1000 0.001 gravity 0.5 0 -9.8 drag brown_lawler classes 10 couple one", "run 10")
+    s.do("create_atoms 1 random 5000 51 NULL", "variable d atom 0.001*exp(0.4*normal(0,1,7))",
+         "set group all diameter 0.001", "set group all diameter v_d",
+         "set group all density 2500", "variable z atom 0.01+20*(0.75*mass/(2500*PI))^(1/3)+0.002*random(0,1,3)",
+         "set group all z v_z", f"fix h all hydro/vans 1 mesh {N} 0.0003 0 fluid 1000 0.001 gravity 0.5 0 -9.8 drag "
+                                "brown_lawler classes 10 couple one", "run 10")
     each, table = of_classes(s, "h", 10), grid(s, "h", 10)
     assert np.all(np.diff(each[:, 0]) > 0) and np.all(np.diff(each[:, 1]) > 0)
     phi = table[:, 10::5]
@@ -144,17 +155,19 @@ def test_a_continuous_distribution_runs_and_shows_its_sorting():
     s.do("create_atoms 1 single 0.02 0.02 0.04", "set atom 5001 diameter 0.008 density 2500", "run 2 pre no")
     later = of_classes(s, "h", 10)
     s.close()
-    assert later[-1, 0] == last[0] and abs(later[-1, 1] - last[1]) > 1e-4 and np.abs(later[:-1, 1] - each[:-1, 1]).max() < 1e-5
+    assert (later[-1, 0] == last[0] and abs(later[-1, 1] - last[1]) > 1e-4 and
+            np.abs(later[:-1, 1] - each[:-1, 1]).max() < 1e-5)
 
 
 @pytest.mark.parametrize("classes", ["yes", "3"])
 def test_classes_that_are_new_in_a_run_have_averages_at_its_start(classes):
-    """A radius that comes between two runs: from step 0 of the second on all classes have the averages of their grains, and a solve on demand the drag
-    of all grains; the transport of the classes adds up to that of all."""
+    """A radius that comes between two runs: from step 0 of the second on all classes have the averages of their grains,
+    and a solve on demand the drag of all grains; the transport of the classes adds up to that of all."""
     s = Scene()
-    s.spheres([[0.01, 0.01, 0.004 * k] for k in range(1, 6)], np.full((5, 3), [0.1, 0, 0]), [0.001, 0.0012, 0.0012, 0.0014, 0.001])
-    s.do(f"fix h all hydro/vans 10 mesh 80 0.0006 0 fluid 1000 0.001 gravity 0.5 0 -9.8 felt volume classes {classes}", "run 0",
-         "create_atoms 1 single 0.015 0.005 0.03", "set atom 6 diameter 0.004 density 2500 vx 0.1", "run 0")
+    s.spheres([[0.01, 0.01, 0.004 * k] for k in range(1, 6)], np.full((5, 3), [0.1, 0, 0]),
+              [0.001, 0.0012, 0.0012, 0.0014, 0.001])
+    s.do(f"fix h all hydro/vans 10 mesh 80 0.0006 0 fluid 1000 0.001 gravity 0.5 0 -9.8 felt volume classes {classes}",
+         "run 0", "create_atoms 1 single 0.015 0.005 0.03", "set atom 6 diameter 0.004 density 2500 vx 0.1", "run 0")
     count = 4 if classes == "yes" else 3
     each, transport = of_classes(s, "h", count), s.number("transport")
     s.do("fix_modify h solve 1e-4 1e-5")

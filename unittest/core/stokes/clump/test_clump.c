@@ -1,7 +1,7 @@
 /* Resistance of rigid clumps: symmetry, dissipation, frames, degenerate and bad input. */
 #include "clumps.h"
 
-/* --- what every resistance obeys ------------------------------------------------------------------------------------- */
+/* --- what every resistance obeys ---------------------------------------------------------------------------------- */
 
 /* Random clump of touching or overlapping spheres of different radii */
 static int random_clump(uint64_t *seed, int n, double *x, double *a)
@@ -58,7 +58,8 @@ static void resistance_is_symmetric_and_dissipates(void **state)
   }
 }
 
-/* Force and torque on the spheres in the lab, for a pose, a viscosity and a linear slip, add up to R (s0, W) + strain E. */
+/* Force and torque on the spheres in the lab, for a pose, a viscosity and a linear slip, add up to R (s0, W) + strain
+   E. */
 static void forces_add_up_to_the_matrix(void **state)
 {
   (void) state;
@@ -134,8 +135,8 @@ static void turned(const double R[36], const double Q[9], double hand, double ou
     }
 }
 
-/* The same clump turned, moved, reflected and its spheres in another order has the same resistance, turned and reflected: for all
- * clusters and for random clumps, whatever the shell. */
+/* The same clump turned, moved, reflected and its spheres in another order has the same resistance, turned and
+ * reflected: for all clusters and for random clumps, whatever the shell. */
 static void answer_does_not_depend_on_orientation_or_order(void **state)
 {
   (void) state;
@@ -229,7 +230,7 @@ static void centre_lies_where_the_drag_is(void **state)
   sd_clump_free(&clump);
 }
 
-/* --- degenerate and bad input ---------------------------------------------------------------------------------------- */
+/* --- degenerate and bad input ------------------------------------------------------------------------------------- */
 
 /* Point forces in a row have no resistance to spin; that must not upset anything else. */
 static void row_without_torques_has_no_spin_resistance(void **state)
@@ -293,7 +294,8 @@ static void count_products(void *ctx, int number, int solves, int product)
   products++;
 }
 
-/* Too large for a dense matrix: gradients give the same answer; too large for anything: refused, with the bytes it would take. */
+/* Too large for a dense matrix: gradients give the same answer; too large for anything: refused, with the bytes it
+   would take. */
 static void memory_decides_the_solver(void **state)
 {
   (void) state;

@@ -5,7 +5,7 @@
 #include "sd_product.h"
 #include "sd_solve.h"
 
-/* --- shell 1: the model's own values --------------------------------------------------------------------------- */
+/* --- shell 1: the model's own values -------------------------------------------------------------------------- */
 
 typedef struct {
   const double *x, *a;
@@ -109,7 +109,8 @@ static void models_have_the_published_eigenvalues(void **state)
   }
 }
 
-/* Four unit spheres in a row at s = 1: values of the test-suite of PyGRPY (R. Waszkiewicz, github.com/RadostW/PyGRPY, tests). */
+/* Four unit spheres in a row at s = 1: values of the test-suite of PyGRPY (R. Waszkiewicz, github.com/RadostW/PyGRPY,
+   tests). */
 static void row_of_four_has_the_values_of_pygrpy(void **state)
 {
   (void) state;
@@ -122,7 +123,7 @@ static void row_of_four_has_the_values_of_pygrpy(void **state)
   sd_clump_free(&clump);
 }
 
-/* --- shells: the exact values ------------------------------------------------------------------------------------- */
+/* --- shells: the exact values ------------------------------------------------------------------------------------ */
 
 static const struct {
   int n;
@@ -167,7 +168,8 @@ static void clusters_are_near_exact(void **state)
   }
 }
 
-/* The coupling of the chiral cluster, and every other entry, beside the exact matrix: 0.6, 0.3, 0.15 % of the largest entry */
+/* The coupling of the chiral cluster, and every other entry, beside the exact matrix: 0.6, 0.3, 0.15 % of the largest
+   entry */
 static void whole_matrices_are_near_exact(void **state)
 {
   (void) state;
@@ -205,8 +207,8 @@ static void fused_rows_are_near_exact(void **state)
   }
 }
 
-/* Drag, and the period of Jeffery's orbit, 2 pi/rate (re + 1/re): re = sqrt((1+B)/(1-B)), B = torque from strain over torque from
- * rotation. Chain along z in a shear u_y = rate z. */
+/* Drag, and the period of Jeffery's orbit, 2 pi/rate (re + 1/re): re = sqrt((1+B)/(1-B)), B = torque from strain over
+ * torque from rotation. Chain along z in a shear u_y = rate z. */
 static void chains_are_near_exact_and_tumble_in_time(void **state)
 {
   (void) state;
@@ -231,8 +233,8 @@ static void chains_are_near_exact_and_tumble_in_time(void **state)
   }
 }
 
-/* Total drag of rigid pairs, gap 0.01 to 10 mean radii, radii 1:2 to 1:100; and touching (a2/a1, along, across, in 6 pi eta a1 U:
- * multipole collocation, computed independently of this project). */
+/* Total drag of rigid pairs, gap 0.01 to 10 mean radii, radii 1:2 to 1:100; and touching (a2/a1, along, across, in 6 pi
+ * eta a1 U: multipole collocation, computed independently of this project). */
 static void unequal_dumbbells_are_near_exact(void **state)
 {
   (void) state;

@@ -77,7 +77,8 @@ static void row_without_spins_turns_across_itself_only(void **state)
   sd_shape_free(&s.shape);
 }
 
-/* The gradient given, or, where it is 0, as far as the centres span it: in space whole; of a sheet and a line what is along it. */
+/* The gradient given, or, where it is 0, as far as the centres span it: in space whole; of a sheet and a line what is
+   along it. */
 static void linear_flow_is_found_exactly(void **state)
 {
   (void) state;

@@ -30,7 +30,8 @@ static void release(body *b)
   sd_clump_free(&b->clump);
 }
 
-/* N [6 6] in space about the point d (in space) from the centre of mobility, of the pose R: from the six draws of unit vectors */
+/* N [6 6] in space about the point d (in space) from the centre of mobility, of the pose R: from the six draws of unit
+   vectors */
 static void covariance(const body *b, const double R[9], double eta, const double d[3], double N[36])
 {
   memset(N, 0, 36 * sizeof(double));
@@ -90,7 +91,8 @@ static void rods_diffuse_as_known(void **state)
   }
 }
 
-/* Drift of the point at d from the centre of mobility, in space: sum over turns t_r about axis r of d N_pr / d t_r, by differences */
+/* Drift of the point at d from the centre of mobility, in space: sum over turns t_r about axis r of d N_pr / d t_r, by
+   differences */
 static void drift(const body *b, const double d[3], double out[3])
 {
   const double h = 1e-5;
@@ -125,7 +127,8 @@ static void nothing_drifts_at_the_centre_of_mobility(void **state)
     for (int p = 0; p < 3; p++)
       for (int q = 0; q < p; q++) CHECK_NEAR(6.0 * SD_PI * (N[6 * p + 3 + q] - N[6 * q + 3 + p]), 0.0, 1e-12);
   }
-  assert_true(fabs(b[1].clump.centre[0] - b[1].noise.centre[0]) + fabs(b[1].clump.centre[1] - b[1].noise.centre[1]) > 1e-6);
+  assert_true(fabs(b[1].clump.centre[0] - b[1].noise.centre[0]) + fabs(b[1].clump.centre[1] - b[1].noise.centre[1]) >
+              1e-6);
   for (int k = 0; k < 2; k++) release(b + k);
 }
 

@@ -59,7 +59,8 @@ static void lone_sphere_has_both_its_drags(void **state)
   }
 }
 
-/* No two points closer than 0.8 of the spacing of a triangular lattice with the same number of points; worst: 98 points (0.804).
+/* No two points closer than 0.8 of the spacing of a triangular lattice with the same number of points; worst: 98 points
+ * (0.804).
 */
 static void points_are_nearly_even(void **state)
 {

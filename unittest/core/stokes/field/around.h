@@ -8,9 +8,10 @@
 
 #include "sd_field.h"
 
-/* Edges are (lx 0 0), (xy ly 0), (xz yz lz): the steps along z say how far y has moved, and both how far x has. out: x a F T of
- * each image of a source within lo ... hi; NULL: only counts */
-static inline int images_within(const sd_ewald_box *b, const double *lo, const double *hi, const sd_field_sources *s, double *out)
+/* Edges are (lx 0 0), (xy ly 0), (xz yz lz): the steps along z say how far y has moved, and both how far x has. out: x
+ * a F T of each image of a source within lo ... hi; NULL: only counts */
+static inline int images_within(const sd_ewald_box *b, const double *lo, const double *hi, const sd_field_sources *s,
+                                double *out)
 {
   int many = 0;
   for (int i = 0; i < s->n; i++) {

@@ -1,4 +1,5 @@
-/* The flow around spheres on a grid: against sums over all spheres, closed forms, and what a sphere of no size would do. */
+/* The flow around spheres on a grid: against sums over all spheres, closed forms, and what a sphere of no size would
+   do. */
 #include "../ewald/periodic.h"
 
 #include "around.h"
@@ -7,7 +8,8 @@
 
 enum { SPHERES = 30, N0 = 9, N1 = 7, N2 = 6, POINTS = N0 * N1 * N2 };
 
-/* Spheres of two sizes in a box of 10 x 9 x 8, that may overlap; forces and torques; a grid that is wider than the box */
+/* Spheres of two sizes in a box of 10 x 9 x 8, that may overlap; forces and torques; a grid that is wider than the
+   box */
 typedef struct {
   double x[3 * SPHERES], a[SPHERES], F[3 * SPHERES], T[3 * SPHERES];
   sd_field_sources s;
@@ -18,7 +20,8 @@ typedef struct {
 static void make(scene *c, int periodic, int turns, double tilt)
 {
   uint64_t seed = 11;
-  *c = (scene){.box = {.periodic = periodic, .origin = {-1.0, 0.5, 2.0}, .edge = {10, 9, 8}, .tilt = {tilt, -0.5 * tilt, 0.7 * tilt}}};
+  *c = (scene){.box = {.periodic = periodic, .origin = {-1.0, 0.5, 2.0}, .edge = {10, 9, 8},
+                       .tilt = {tilt, -0.5 * tilt, 0.7 * tilt}}};
   for (int i = 0; i < SPHERES; i++) {
     c->a[i] = i % 3 ? 0.6 : 1.1;
     for (int d = 0; d < 3; d++) {
@@ -66,7 +69,8 @@ static void closed_form(const scene *c, const double *x, double *u)
       if (R <= a)
         u[d] += F[d] / (6 * SD_PI * a) + turned / (8 * SD_PI * a * a * a);
       else
-        u[d] += (F[d] / R + r[d] * rF / pow(R, 3) + a * a / 3 * (F[d] / pow(R, 3) - 3 * r[d] * rF / pow(R, 5)) + turned / pow(R, 3)) /
+        u[d] += (F[d] / R + r[d] * rF / pow(R, 3) + a * a / 3 * (F[d] / pow(R, 3) - 3 * r[d] * rF / pow(R, 5)) +
+                 turned / pow(R, 3)) /
                 (8 * SD_PI);
     }
   }
@@ -138,7 +142,8 @@ static void periodic_flow_is_that_of_a_tiny_sphere(void **state)
       }
 }
 
-/* Points that are closer to each other than those of the waves' grid, beside them in each direction, in a few spheres and around */
+/* Points that are closer to each other than those of the waves' grid, beside them in each direction, in a few spheres
+   and around */
 static void flow_in_a_part_of_the_box_is_that_of_a_tiny_sphere(void **state)
 {
   (void) state;
@@ -214,7 +219,8 @@ static void lone_sphere_has_the_flow_of_stokes(void **state)
   sd_field_free(&f);
 }
 
-/* What ParaView draws between the points: the error of linear interpolation falls by four where the spacing is halved. */
+/* What ParaView draws between the points: the error of linear interpolation falls by four where the spacing is
+   halved. */
 static void between_points_the_error_is_of_second_order(void **state)
 {
   (void) state;
@@ -237,7 +243,8 @@ static void between_points_the_error_is_of_second_order(void **state)
           for (int d = 0; d < 3; d++) {
             double mean = 0.0;
             for (int corner = 0; corner < 8; corner++)
-              mean += 0.125 * u[3 * (((k + 2 * (corner / 4)) * n + j + 2 * (corner / 2 % 2)) * n + i + 2 * (corner % 2)) + d];
+              mean += 0.125 * u[3 * (((k + 2 * (corner / 4)) * n + j + 2 * (corner / 2 % 2)) * n + i +
+                                     2 * (corner % 2)) + d];
             error[level] = fmax(error[level], fabs(mean - u[3 * (((k + 1) * n + j + 1) * n + i + 1) + d]));
           }
     free(u);
@@ -304,8 +311,8 @@ static void within_a_sphere_the_flow_is_that_of_the_sphere(void **state)
   for (int p = 0; p < (int) sd_field_points(&g); p++) {
     double at[3];
     point_of(&g, p, at);
-    const double up = round(at[2] / 10), r[3] = {at[0] - 3 * up - 10 * round((at[0] - 3 * up) / 10), at[1] - 10 * round(at[1] / 10),
-                                                 at[2] - 10 * up};
+    const double up = round(at[2] / 10), r[3] = {at[0] - 3 * up - 10 * round((at[0] - 3 * up) / 10),
+                                                 at[1] - 10 * round(at[1] / 10), at[2] - 10 * up};
     const int within = sd_dot(r, r) <= a * a;
     assert_int_equal(inside[p], within);
     for (int d = 0; d < 3; d++) {

@@ -4,7 +4,8 @@
 
 #include <string.h>
 
-/* Every pair within the cut-off once, against the double loop: a cube, a needle, a sheet, all at one point; ghosts are sources only. */
+/* Every pair within the cut-off once, against the double loop: a cube, a needle, a sheet, all at one point; ghosts are
+   sources only. */
 static void cells_find_what_the_double_loop_finds(void **state)
 {
   (void) state;
@@ -32,8 +33,8 @@ static void cells_find_what_the_double_loop_finds(void **state)
     }
 }
 
-/* Points come one by one, and a ball of any radius finds all that it holds, each once: also where cells are 2e7 sides away from
- * the corner that they are counted from, and where their numbers are negative. */
+/* Points come one by one, and a ball of any radius finds all that it holds, each once: also where cells are 2e7 sides
+ * away from the corner that they are counted from, and where their numbers are negative. */
 static void cells_give_all_of_a_ball(void **state)
 {
   (void) state;
@@ -100,8 +101,8 @@ static void clump_members_once_as_the_closest_image(void **state)
   sd_neighbors_free(&list);
 }
 
-/* 3 sqrt(ai aj)/(2R) of the closest pair, of all pairs, of a share of the rows and by list; a taper takes its part; radius 0:
- * nobody. */
+/* 3 sqrt(ai aj)/(2R) of the closest pair, of all pairs, of a share of the rows and by list; a taper takes its part;
+ * radius 0: nobody. */
 static void oseen_coupling_of_the_closest_pair(void **state)
 {
   (void) state;
@@ -134,7 +135,8 @@ static void oseen_coupling_of_the_closest_pair(void **state)
   sd_neighbors_free(&list);
 }
 
-/* Whatever is close enough to make the matrix indefinite is found, as by the double loop: radii 1:100, rows in three shares. */
+/* Whatever is close enough to make the matrix indefinite is found, as by the double loop: radii 1:100, rows in three
+   shares. */
 static void oseen_coupling_finds_every_close_pair(void **state)
 {
   (void) state;

@@ -44,8 +44,8 @@ static void at_most(int count, int limit, const char *what)
   if (count > limit) fail_msg("%s: %d iterations, at most %d", what, count, limit);
 }
 
-/* By brute force: each sphere is the one farthest from all before it, to seven digits, the smaller index first, and sees those of
- * them that are within 1.5 times that distance. */
+/* By brute force: each sphere is the one farthest from all before it, to seven digits, the smaller index first, and
+ * sees those of them that are within 1.5 times that distance. */
 static void spheres_come_farthest_first(void **state)
 {
   (void) state;
@@ -101,7 +101,8 @@ static void rounding_does_not_change_the_order(void **state)
   for (int c = 0; c < CLUMPS; c++) {
     const double at[3] = {uniform(&seed, 0, 20), uniform(&seed, 0, 20), uniform(&seed, 0, 20)};
     for (int k = 0; k < 4; k++)
-      scene_set(&s, 4 * c + k, at[0] + CORNER[k][0] / sqrt(2), at[1] + CORNER[k][1] / sqrt(2), at[2] + CORNER[k][2] / sqrt(2), A, ETA);
+      scene_set(&s, 4 * c + k, at[0] + CORNER[k][0] / sqrt(2), at[1] + CORNER[k][1] / sqrt(2),
+                at[2] + CORNER[k][2] / sqrt(2), A, ETA);
   }
   const sd_spheres spheres = {s.x, s.a, s.w};
   sd_rows first = {0};
@@ -177,8 +178,8 @@ static void sparse_factor_is_symmetric_and_splits(void **state)
   scene_free(&s);
 }
 
-/* Blocks are symmetric and positive definite: lone spheres in blocks of one, some spheres in no block, some take no part,
- * viscosity that varies. */
+/* Blocks are symmetric and positive definite: lone spheres in blocks of one, some spheres in no block, some take no
+ * part, viscosity that varies. */
 static void blocks_are_symmetric(void **state)
 {
   (void) state;
@@ -230,7 +231,8 @@ static void blocks_are_symmetric(void **state)
   scene_free(&s);
 }
 
-/* Touching lattice of 1000 spheres: 42 iterations by the diagonal; total drag of the model from a dense factorisation. */
+/* Touching lattice of 1000 spheres: 42 iterations by the diagonal; total drag of the model from a dense
+   factorisation. */
 static void iterations_of_the_lattice(void **state)
 {
   (void) state;
@@ -338,8 +340,8 @@ static void coincident_spheres_do_not_stop_the_set_up(void **state)
   }
 }
 
-/* Pairs at distances where single precision sees one point, or loses most digits of what is between: the factor is as good as in
- * double precision. */
+/* Pairs at distances where single precision sees one point, or loses most digits of what is between: the factor is as
+ * good as in double precision. */
 static void nearly_coincident_spheres_keep_a_good_factor(void **state)
 {
   (void) state;

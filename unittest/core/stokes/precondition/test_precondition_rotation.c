@@ -91,8 +91,8 @@ static double error_of_inverse(const rotating *g, sd_precondition *P, void *ctx)
   return worst;
 }
 
-/* Everything seen, both are the inverse of the matrix that the product applies: unequal radii, overlaps, viscosity that varies,
- * a taper, spheres that take no part. The factor is kept in single precision. */
+/* Everything seen, both are the inverse of the matrix that the product applies: unequal radii, overlaps, viscosity that
+ * varies, a taper, spheres that take no part. The factor is kept in single precision. */
 static void what_sees_all_is_the_inverse(void **state)
 {
   (void) state;
@@ -343,7 +343,8 @@ static void between(int low, int count, int high, const char *what)
     fail_msg("%s: %d iterations, expected %d to %d", what, count, low, high);
 }
 
-/* A factor that left torques to the diagonal would need 21 (lattice) and 45 (flocs), 70 and 160 by the diagonal alone. */
+/* A factor that left torques to the diagonal would need 21 (lattice) and 45 (flocs), 70 and 160 by the diagonal
+   alone. */
 static void iterations_with_random_spins(void **state)
 {
   (void) state;
@@ -372,8 +373,8 @@ static void iterations_with_random_spins(void **state)
   scene_free(&s);
 }
 
-/* A rigid clump of overlapping spheres, solved without its dense matrix; the resistance is that of the dense one. A factor without
- * torques would need some hundred iterations. */
+/* A rigid clump of overlapping spheres, solved without its dense matrix; the resistance is that of the dense one. A
+ * factor without torques would need some hundred iterations. */
 static void clumps_with_torques_are_solved_in_few_iterations(void **state)
 {
   (void) state;

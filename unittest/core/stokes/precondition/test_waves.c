@@ -9,7 +9,7 @@
 static const sd_law RPY = {.tensor = SD_TENSOR_RPY};
 static const double ALPHA = 0.6;
 
-/* --- what is inverted --------------------------------------------------------------------------------------------- */
+/* --- what is inverted -------------------------------------------------------------------------------------------- */
 
 enum { N = 12 };
 
@@ -51,8 +51,8 @@ static double *matrix_of(sd_precondition *P, void *ctx, int size)
   return A;
 }
 
-/* sum over the waves of the list by the definition of the model: velocities and spins of i from forces and torques on j, with the
- * spheres' own s and p, and k from the edges: k.a = 2 pi n. */
+/* sum over the waves of the list by the definition of the model: velocities and spins of i from forces and torques on
+ * j, with the spheres' own s and p, and k from the edges: k.a = 2 pi n. */
 static void add_waves(const scene *s, const sd_ewald_box *b, int width, double *M)
 {
   sd_wave_list list;
@@ -90,8 +90,8 @@ static void add_waves(const scene *s, const sd_ewald_box *b, int width, double *
   }
 }
 
-/* P^-1 = alpha B^-1 + the long waves of the model, to the error of s and p; exactly symmetric and positive definite. m: spheres of
- * a clump. */
+/* P^-1 = alpha B^-1 + the long waves of the model, to the error of s and p; exactly symmetric and positive definite. m:
+ * spheres of a clump. */
 static void inverts_the_long_waves(int width, int m)
 {
   const int size = width * N;
@@ -178,10 +178,10 @@ static void the_longest_waves_come_first(void **state)
   assert_int_equal(sd_wave_list_of(&box, &list), 0);
 }
 
-/* --- ranks -------------------------------------------------------------------------------------------------------- */
+/* --- ranks ------------------------------------------------------------------------------------------------------- */
 
-/* Sums over two ranks that run one after the other, from the beginning in every turn: a turn gathers the first sum that is not yet
- * known, and the next turn tells it. Sums after it are each rank's own, of no use and not looked at. */
+/* Sums over two ranks that run one after the other, from the beginning in every turn: a turn gathers the first sum that
+ * is not yet known, and the next turn tells it. Sums after it are each rank's own, of no use and not looked at. */
 typedef struct {
   double *sums[16];
   int known, call, gathered;
@@ -199,7 +199,8 @@ static sd_status tell(void *ctx, double *values, int count)
   return SD_OK;
 }
 
-/* Clumps of four, eight spheres on one rank and four on the other; or both ranks with all spheres and half of the work (parts). */
+/* Clumps of four, eight spheres on one rank and four on the other; or both ranks with all spheres and half of the work
+   (parts). */
 static void ranks_share_the_waves(void **state)
 {
   (void) state;
@@ -244,7 +245,7 @@ static void ranks_share_the_waves(void **state)
   scene_free(&s);
 }
 
-/* --- what it is for ----------------------------------------------------------------------------------------------- */
+/* --- what it is for ---------------------------------------------------------------------------------------------- */
 
 /* Iterations for random velocities, forces alone or with spins and torques; p: the spheres with their images */
 static int iterations(periodic *p, const scene *s, sd_precondition *P, void *ctx, double tolerance)
@@ -374,8 +375,8 @@ static void waves_stay_good(void **state)
   scene_free(&s);
 }
 
-/* One sphere in a box smaller than it is, two at one point, a cloud in a corner, a box that is a needle: always symmetric and
- * positive definite. */
+/* One sphere in a box smaller than it is, two at one point, a cloud in a corner, a box that is a needle: always
+ * symmetric and positive definite. */
 static void odd_scenes_have_an_inverse(void **state)
 {
   (void) state;

@@ -1,4 +1,5 @@
-/* The packed product against the sum of the blocks of pairs (plain.h), for every instruction set that this machine runs. */
+/* The packed product against the sum of the blocks of pairs (plain.h), for every instruction set that this machine
+   runs. */
 #include "scene.h"
 
 #include <string.h>
@@ -157,7 +158,8 @@ static void spheres_that_take_no_part(void **state)
   scene_free(&s);
 }
 
-/* All at one point; pairs at one point; a small sphere in the middle of a large one; exact contact and one bit beside it. */
+/* All at one point; pairs at one point; a small sphere in the middle of a large one; exact contact and one bit beside
+   it. */
 static void coincident_and_touching(void **state)
 {
   (void) state;
@@ -277,8 +279,8 @@ static void tapers(void **state)
   CHECK_NEAR(sd_taper_factor(&spherical, 1.8), 0.0, 0.0);
 }
 
-/* Touching 5^3 spheres, seen up to 6.1 radii: the plain cut-off leaves negative eigenvalues, Wendland's taper lifts all of them
- * above 0.358 of the diagonal (dense eigenvalues: +0.358). */
+/* Touching 5^3 spheres, seen up to 6.1 radii: the plain cut-off leaves negative eigenvalues, Wendland's taper lifts all
+ * of them above 0.358 of the diagonal (dense eigenvalues: +0.358). */
 static void taper_keeps_the_matrix_positive_definite(void **state)
 {
   (void) state;

@@ -241,8 +241,8 @@ static void degenerate_clumps_are_shapes_too(void **state)
   sd_shape_free(&s);
 }
 
-/* Coordinates as a data file with six digits has them, far from the origin: every cluster keeps its symmetry, is one shape in any
- * orientation and order, and the shape of the exact cluster is that of the rounded one. */
+/* Coordinates as a data file with six digits has them, far from the origin: every cluster keeps its symmetry, is one
+ * shape in any orientation and order, and the shape of the exact cluster is that of the rounded one. */
 static void six_digits_are_one_shape(void **state)
 {
   (void) state;

@@ -1,5 +1,5 @@
-/* Spheres in a box that is periodic in two directions, on one rank: their images along it as ghosts, and the engine slab placed
- * among them. */
+/* Spheres in a box that is periodic in two directions, on one rank: their images along it as ghosts, and the engine
+ * slab placed among them. */
 #ifndef SLAB_H
 #define SLAB_H
 
@@ -35,8 +35,8 @@ static inline sd_ewald_box slab_box(int axis, double lx, double ly)
   return box;
 }
 
-static inline sd_status slab_choose(const sd_slab_walls *walls, const sd_ewald_box *box, const double *x, const double *a, int n,
-                                    double tolerance, sd_slab *out)
+static inline sd_status slab_choose(const sd_slab_walls *walls, const sd_ewald_box *box, const double *x,
+                                    const double *a, int n, double tolerance, sd_slab *out)
 {
   sd_ewald_sizes sizes = {0};
   double lo = INFINITY, hi = -INFINITY, smallest = INFINITY;
@@ -105,8 +105,8 @@ static inline sd_status slab_try(slab *s, const sd_slab *how, const double *x, c
   return sd_mobility_place(&s->omega, &sd_mobility_slab, &scene);
 }
 
-static inline void slab_place(slab *s, const sd_slab_walls *walls, const sd_ewald_box *box, const double *x, const double *a,
-                              int n, double tolerance)
+static inline void slab_place(slab *s, const sd_slab_walls *walls, const sd_ewald_box *box, const double *x,
+                              const double *a, int n, double tolerance)
 {
   sd_slab how = {0};
   assert_int_equal(slab_choose(walls, box, x, a, n, tolerance, &how), SD_OK);
@@ -127,12 +127,13 @@ static inline void slab_apply(slab *s, const double *F, double *u)
 {
   assert_int_equal(sd_mobility_apply(&s->omega, F, u), SD_OK);
   for (int i = 0; i < s->n; i++)
-    for (int d = 0; d < 3 && s->a[i] > 0.0; d++) u[3 * i + d] += s->w[i] * s->w[i] * F[3 * i + d] / (6.0 * SD_PI * s->a[i]);
+    for (int d = 0; d < 3 && s->a[i] > 0.0; d++)
+      u[3 * i + d] += s->w[i] * s->w[i] * F[3 * i + d] / (6.0 * SD_PI * s->a[i]);
 }
 
 /* All of it at once */
-static inline void slab_velocities(const sd_slab_walls *walls, const sd_ewald_box *box, const double *x, const double *a, int n,
-                                   double tolerance, const double *F, double *u)
+static inline void slab_velocities(const sd_slab_walls *walls, const sd_ewald_box *box, const double *x,
+                                   const double *a, int n, double tolerance, const double *F, double *u)
 {
   slab s;
   slab_place(&s, walls, box, x, a, n, tolerance);

@@ -66,8 +66,8 @@ static void velocities_are_those_of_dense_sums(void **state)
   }
 }
 
-/* Across a floor in a cell of 76.8 radii, over 1/(6 pi a): lattice sums of other authors with 200 images each way (repository
- * DoublyPeriodicStokes, self_mobility_bw_ref). Along it their lattice ends too early: 3e-7 to 3e-5 off. */
+/* Across a floor in a cell of 76.8 radii, over 1/(6 pi a): lattice sums of other authors with 200 images each way
+ * (repository DoublyPeriodicStokes, self_mobility_bw_ref). Along it their lattice ends too early: 3e-7 to 3e-5 off. */
 static void a_lone_sphere_above_a_floor_is_that_of_dpstokes(void **state)
 {
   (void) state;
@@ -85,7 +85,7 @@ static void a_lone_sphere_above_a_floor_is_that_of_dpstokes(void **state)
   }
 }
 
-/* --- random scenes --- */
+/* --- random scenes -- */
 
 enum { N = 48 };
 
@@ -93,8 +93,8 @@ typedef struct {
   double x[3 * N], a[N], F[3 * N];
 } cloud;
 
-/* In a cell Lx x Ly across axis 2, heights up to `height` above z = 0; radii 1 to `ratio`. Some touch the floor, or cut it;
- * some do that at the other end. */
+/* In a cell Lx x Ly across axis 2, heights up to `height` above z = 0; radii 1 to `ratio`. Some touch the floor, or cut
+ * it; some do that at the other end. */
 static cloud make(double Lx, double Ly, double height, double ratio, uint64_t seed)
 {
   cloud c;
@@ -194,7 +194,7 @@ static void errors_are_below_the_tolerance(void **state)
   }
 }
 
-/* --- one wave --- */
+/* --- one wave -- */
 
 /* Forces that stop a flow on two walls: the inverse of the flow that forces make there, (1) of sd_slab_wave.h */
 static void walls_stop_the_flow_of_their_own_forces(void **state)
@@ -238,7 +238,7 @@ static void a_window_keeps_a_falling_wave(void **state)
     }
 }
 
-/* --- relations --- */
+/* --- relations -- */
 
 static const sd_wall ground = {2, 1, 0.0};
 
@@ -275,8 +275,8 @@ static void the_matrix_is_symmetric(void **state)
   }
 }
 
-/* The smallest eigenvalue of a chain of eight spheres 0.2 a apart, times 6 pi a: 0.0194815 on a floor, 0.0194747 in a slit, in dense
- * sums of another code */
+/* The smallest eigenvalue of a chain of eight spheres 0.2 a apart, times 6 pi a: 0.0194815 on a floor, 0.0194747 in a
+ * slit, in dense sums of another code */
 static void chains_on_a_floor_keep_their_smallest_eigenvalue(void **state)
 {
   (void) state;

@@ -15,7 +15,8 @@ static sd_slab_walls walls_at(const char *geometry, double H, int no_flux)
 }
 
 /* Along x and across, over the velocity of the sphere alone in free fluid */
-static void velocities(const char *geometry, double H, int no_flux, double z, double L, double tolerance, double *along, double *across)
+static void velocities(const char *geometry, double H, int no_flux, double z, double L, double tolerance, double *along,
+                       double *across)
 {
   const sd_slab_walls walls = walls_at(geometry, H, no_flux);
   const sd_ewald_box box = slab_box(2, L, L);
@@ -58,9 +59,9 @@ static void layers_move_as_their_area_fraction_says(void **state)
   assert_true(check_table("slab/monolayer.csv", 2, 4, 5, 6, 7, 1e-6) >= 20);
 }
 
-/* In our own sums all digits; of DPStokes those that its lattice and its kernel leave: along a floor the lattice ends at 200 cells,
- * which misses 3 g h/(2 S r_c) in units of F/eta, r_c near 200 L; in a slit the kernel of a sphere is another one, 6e-4 off in the
- * bulk and more the closer to contact. */
+/* In our own sums all digits; of DPStokes those that its lattice and its kernel leave: along a floor the lattice ends
+ * at 200 cells, which misses 3 g h/(2 S r_c) in units of F/eta, r_c near 200 L; in a slit the kernel of a sphere is
+ * another one, 6e-4 off in the bulk and more the closer to contact. */
 static void a_lone_sphere_is_that_of_dpstokes(void **state)
 {
   (void) state;
@@ -77,13 +78,14 @@ static void a_lone_sphere_is_that_of_dpstokes(void **state)
   }
 }
 
-/* The mean of the velocities with and without flux is that in a slit without end, but for quadrupoles: the dipole of the long waves is
- * taken away. RPY_parallel, RPY_normal of another code by quadrature (exact_slit of the reference); Faxen's series, of a sphere in
- * the middle, is good to 4e-4 at a slit of ten radii and better in wider ones. */
+/* The mean of the velocities with and without flux is that in a slit without end, but for quadrupoles: the dipole of
+ * the long waves is taken away. RPY_parallel, RPY_normal of another code by quadrature (exact_slit of the reference);
+ * Faxen's series, of a sphere in the middle, is good to 4e-4 at a slit of ten radii and better in wider ones. */
 static void a_sphere_in_the_middle_moves_as_faxen_says(void **state)
 {
   (void) state;
-  static const double rows[][4] = {{4, 0.54489764, 0.36615885, 0.0}, {6, 0.68007668, 0.54452248, 0.0}, {10, 0.80246530, 0.71594178, 0.802826},
+  static const double rows[][4] = {{4, 0.54489764, 0.36615885, 0.0}, {6, 0.68007668, 0.54452248, 0.0},
+                                   {10, 0.80246530, 0.71594178, 0.802826},
                                    {20, 0.90000416, 0.85563173, 0.900037}, {50, 0.95986189, 0.94198786, 0.959867}};
   for (int k = 0; k < 5; k++) {
     const double H = rows[k][0], s = 2.0 / H, L = 6.0 * H;

@@ -33,8 +33,8 @@ static void overlap_branch_is_the_published_form(void **state)
   }
 }
 
-/* f and g at both joints: the far form meets the overlap form at contact, the overlap form meets 1/A where one sphere is just
- * inside. */
+/* f and g at both joints: the far form meets the overlap form at contact, the overlap form meets 1/A where one sphere
+ * is just inside. */
 static void branches_join_with_their_values(void **state)
 {
   (void) state;
@@ -95,9 +95,8 @@ static void near_coincidence_keeps_its_digits(void **state)
   }
 }
 
-/* Far apart: (1 + a_i^2/6 lap)(1 + a_j^2/6 lap) on the Stokeslet, hence divergence free. The '+' of the manual page of the
- * original
- * is not: there div = -2 e.r/r^5. Central differences, error O(h^2). */
+/* Far apart: (1 + a_i^2/6 lap)(1 + a_j^2/6 lap) on the Stokeslet, hence divergence free. The '+' of the manual page of
+ * the original is not: there div = -2 e.r/r^5. Central differences, error O(h^2). */
 static void tensor_is_divergence_free(void **state)
 {
   (void) state;
@@ -228,8 +227,8 @@ static void rotation_branches_join_with_their_values(void **state)
   }
 }
 
-/* Both spheres at nearly one point turn as one: f' -> 1/a^3 (1 - 27R/(32a)), g' -> 9R/(32 a^4), c -> R/(2 a^3), with every
- * digit. */
+/* Both spheres at nearly one point turn as one: f' -> 1/a^3 (1 - 27R/(32a)), g' -> 9R/(32 a^4), c -> R/(2 a^3), with
+ * every digit. */
 static void rotation_keeps_its_digits_near_coincidence(void **state)
 {
   (void) state;
@@ -247,7 +246,8 @@ static void rotation_keeps_its_digits_near_coincidence(void **state)
   assert_true(g == 0.0 && sd_rpy_radial_wf(0.0, a, a) == 0.0);
 }
 
-/* The host of a hidden sphere turns all that is inside with it, and feels a force at the hidden centre as its torque R x F. */
+/* The host of a hidden sphere turns all that is inside with it, and feels a force at the hidden centre as its torque R
+   x F. */
 static void hidden_sphere_turns_with_its_host(void **state)
 {
   (void) state;
@@ -279,8 +279,8 @@ static void half_curl(const double r[3], double ai, double aj, double eta, int q
   }
 }
 
-/* Far apart W_i is half the curl of the flow that moves i, for a force and for a torque at j (the flow of a torque and the
- * vorticity are harmonic, so radii do not enter); the flow of a torque is free of divergence as well. */
+/* Far apart W_i is half the curl of the flow that moves i, for a force and for a torque at j (the flow of a torque and
+ * the vorticity are harmonic, so radii do not enter); the flow of a torque is free of divergence as well. */
 static void rotation_is_half_the_curl(void **state)
 {
   (void) state;
@@ -294,8 +294,8 @@ static void rotation_is_half_the_curl(void **state)
   }
 }
 
-/* Values of the test-suite of PyGRPY (R. Waszkiewicz, github.com/RadostW/PyGRPY, tests/test_tensors.py): equal spheres a = 1 at
- * r = 1, viscosity 1. */
+/* Values of the test-suite of PyGRPY (R. Waszkiewicz, github.com/RadostW/PyGRPY, tests/test_tensors.py): equal spheres
+ * a = 1 at r = 1, viscosity 1. */
 static void grand_block_has_the_values_of_pygrpy(void **state)
 {
   (void) state;
@@ -353,9 +353,9 @@ static int random_clump(uint64_t *seed, double x[MOST][3], double a[MOST])
   return n;
 }
 
-/* Matrices of random clumps scaled to unit diagonal, translation alone and with rotation. An independent evaluation of 300 other
- * such clumps found smallest eigenvalues from 0.038 and 0.030, and these have them from 0.032 and 0.028: a wrong overlap form shows
- * long before it is indefinite. The far form used inside goes to -1e4. */
+/* Matrices of random clumps scaled to unit diagonal, translation alone and with rotation. An independent evaluation of
+ * 300 other such clumps found smallest eigenvalues from 0.038 and 0.030, and these have them from 0.032 and 0.028: a
+ * wrong overlap form shows long before it is indefinite. The far form used inside goes to -1e4. */
 static void overlapping_clumps_are_positive_definite(void **state)
 {
   (void) state;

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Are the series for two spheres, which make the plugin's table, right?
-#   check.sh BUILD   tests them with that build folder, in some seconds, against other computations, and notes in tested.sha256 what was tested
+#   check.sh BUILD   tests them with that build folder, in some seconds, against other computations, and notes in
+#                    tested.sha256 what was tested
 #   check.sh         whether the series and their tests are what was noted: a test of every build
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
