@@ -2,6 +2,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "update.h"
 
 #include <algorithm>
 #include <new>
@@ -155,6 +156,11 @@ int RowsFix::unpack_exchange(int i, double *buf)
   return m;
 }
 
+bool RowsFix::within_run() const
+{
+  return update->whichflag == 1;
+}
+
 /* All atoms take as much as the longest, so that the file tells whether it is of this kind. */
 int RowsFix::maxsize_restart()
 {
@@ -165,7 +171,7 @@ int RowsFix::maxsize_restart()
 
 int RowsFix::pack_restart(int i, double *buf)
 {
-  record(i);
+  if (within_run()) record(i);
   buf[0] = maxsize_restart();
   for (size_t k = 0, m = 1; k < in_files; k++) m += kept[k]->pack(i, buf + m);
   return maxsize_restart();

@@ -135,8 +135,10 @@ class RowsFix : public LAMMPS_NS::Fix {
   enum Borders { NO_BORDERS, WITH_BORDERS };
   void keep(const std::vector<RowsOfAtoms *> &all, AtomArray *output, bool restarts,
             Borders borders = NO_BORDERS, const std::vector<RowsOfAtoms *> &moving = {});
-  /* Before the rows of an atom are written to a restart file. */
+  /* Before the rows of an atom are written to a restart file within a run. Between runs they stay as the last
+   * one has left them, so that the next one, also from the file, knows who has been changed since. */
   virtual void record(int /*i*/) {}
+  bool within_run() const;
   /* Do the rows of a restart file stand? */
   virtual bool restored() const { return true; }
   /* What else restart files hold: numbers, and whatever these two add before and after. The numbers are

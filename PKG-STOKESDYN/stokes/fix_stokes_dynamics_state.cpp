@@ -213,7 +213,7 @@ void FixStokesDynamicsState::set_larger_spheres(const std::vector<double> &all)
 
 void FixStokesDynamicsState::write_state(NamedState &out)
 {
-  present_box(global.box);
+  if (within_run()) present_box(global.box);
   out.put("time", time());
   out.put("places_box", global.made_in_box);
   out.put("loose", global.loose);

@@ -106,6 +106,33 @@ def test_restart_file_written_within_a_run_continues(simulation, unbroken, tmp_p
     assert np.abs(last(sim) - unbroken(kind, words)).max() < LIMIT
 
 
+BETWEEN = {"pushed": "velocity all set 3 0 0", "displaced": "displace_atoms all random 0.2 0.2 0.2 77 units box",
+           "resized": "set group all diameter 1.1", "box": "change_box all z final -20 40 units box"}
+
+
+@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("inertia", [True, False])
+def test_what_has_changed_since_the_run_is_seen_in_the_file_too(simulation, tmp_path, inertia, between):
+    """Forces, v' and velocities from before the change are not those of the run that begins behind it, in the script or from the file."""
+    move = ["fix drag all stokes_dynamics", INTEGRATORS["free"]] if inertia else ["fix move all stokes_dynamics/overdamped"]
+    rows, proceed = "f_drag[1]" if inertia else "f_move[1]", ["fix pull all gravity 1.5 vector 0.3 0 -1", *move, "timestep 0.01"]
+    begin = input_lines(scene("free"), "cut_off_distance inf visc 1.3" + " update_every 7" * inertia, tmp_path / "data", boundary="p p p",
+                        box=BOX, fix=False)
+
+    def one_step(sim):
+        columns = f"x y z vx vy vz {rows}"
+        sim.commands(dump_lines(tmp_path / "dump", every=1, columns=columns) + ["run 1", "undump out"])
+        return np.vstack([frame for _, frame in read_dump(tmp_path / "dump")])
+
+    def changed():
+        return simulation().commands(begin + proceed).run(5).commands([BETWEEN[between]])
+
+    here = one_step(changed())
+    changed().command(f"write_restart {tmp_path}/mid")
+    there = one_step(simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", *proceed]))
+    assert np.abs(there - here).max() < LIMIT
+
+
 @pytest.mark.parametrize("restart", [False, True])
 @pytest.mark.parametrize("warm", ["no", "yes"])
 def test_a_run_goes_on_with_algorithm_2_though_algorithm_1_would_converge_by_now(simulation, tmp_path, warm, restart):

@@ -121,6 +121,19 @@ def test_restart_goes_on_as_if_unbroken(tmp_path, profile, kind):
         assert (np.abs(other - whole).max(axis=0) / (np.abs(whole).max(axis=0) + 1e-300)).max() < 1e-10, name
 
 
+def test_a_push_after_the_run_is_seen_in_the_restart_file_too(tmp_path):
+    """The force of the last step is that of the old velocities: behind the push it counts neither in the script nor from the file."""
+    script, output = bed_script(MESH, layers=2), "run 0\nwrite_dump all custom dump.{0} id f_vans[1] f_vans[2] f_vans[3] modify format float %.17g\n"
+    pushed = script + "run 30\nvelocity mobile set 0.5 0 0\n"
+    runs = {"here": pushed, "file": pushed + "write_restart half\n",
+            "there": script[:script.index("region box")] + "read_restart half\n" + script[script.index("pair_style"):]}
+    for name, text in runs.items():
+        done = run_lmp(tmp_path, text + output.format(name), name="in." + name)
+        assert done.returncode == 0, done.stdout[-2000:]
+    here, _, there = (dump_rows(tmp_path / f"dump.{name}") for name in runs)
+    assert np.abs(there - here).max() < 1e-10 * np.abs(here[:, 1:]).max()
+
+
 @pytest.mark.parametrize("keywords", ["gravity v_gx 0 v_gz stream rest", "gravity 0.4905 0 v_gz stream rest couple one upflow v_up"])
 def test_gravity_in_a_run_in_pieces_is_that_of_the_last_coupling(tmp_path, profile, keywords):
     """A variable is read at every coupling: broken between two of them, a run goes on with what it had, from memory and from a restart file."""
