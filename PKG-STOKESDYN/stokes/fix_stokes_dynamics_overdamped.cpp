@@ -153,6 +153,7 @@ void FixStokesDynamicsOverdamped::set_up_early()
 {
   if (first != WAIT) return;
   set_up();
+  note_causes(hydrodynamics());
   first = EARLY;
 }
 

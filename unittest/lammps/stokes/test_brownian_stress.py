@@ -247,13 +247,14 @@ def test_stress_of_a_run_in_pieces_is_that_of_the_run_in_one(tmp_path, way):
 IN_SETUP = ["fix pull all addforce 0.3 0 -1", "fix move all stokes_dynamics/overdamped temperature 0.8 5"]
 
 
-@pytest.mark.parametrize("variance", ["raw", "low"])
+@pytest.mark.parametrize("variance, temperature", [("raw", 0.8), ("low", 0.8), ("raw", 0.0)])
 @pytest.mark.parametrize("words", ["start 2", ""])
-def test_averages_take_the_value_of_the_first_step_too(simulation, tmp_path, variance, words):
+def test_averages_take_the_value_of_the_first_step_too(simulation, tmp_path, variance, temperature, words):
     """Where one value is asked for each time, LAMMPS takes the first in set-up, before the fixes that come later"""
     sim = simulation(Spheres(THREE), f"{FILMS}", fix=False, dt=1e-3)
     sim.commands(IN_SETUP[:1] + [line.format(variance) for line in SUM] +
-                 [f"fix out all ave/time 1 1 2 c_sum[4] {words} file {tmp_path}/values"] + IN_SETUP[1:] +
+                 [f"fix out all ave/time 1 1 2 c_sum[4] {words} file {tmp_path}/values"] +
+                 [IN_SETUP[1].replace("0.8", str(temperature))] +
                  ["thermo 2", "thermo_style custom step c_sum[4]",
                   f"fix same all print 2 '$(step) $(c_sum[4]:%.8g)' file {tmp_path}/same"]).run(4).run(2)
     values, same = np.loadtxt(tmp_path / "values"), np.loadtxt(tmp_path / "same")
