@@ -271,7 +271,7 @@ const std::vector<Neighbour> stokes_neighbours = {
      "turns spheres by angular momenta, of which the fluid knows nothing, so that it does not damp "
      "their spin: use fix nve/sphere or its like"},
     {N::FIX, "setforce freeze", OVERDAMPED, N::WARNING,
-     "sets forces to 0, and without inertia that does not hold a sphere: use keyword held GROUP, or pin "
+     "sets forces, and without inertia a force of 0 does not hold a sphere: use keyword held GROUP, or pin "
      "GROUP for spheres that turn in their place", nullptr, FREE},
     {N::FIX, "addtorque", TURNING, N::WARNING,
      "pushes the atoms of its group, which turns the group and not the spheres, and does nothing "

@@ -197,16 +197,18 @@ Solve::Draw Noise::how_to_draw(const Hydrodynamics &hydro)
 void Noise::announce(const Hydrodynamics &hydro, double smallest, double drag) const
 {
   const double step = drag > 0.0 ? scale(update->dt) / sqrt(drag) : 0.0;
-  const double radii = step / smallest, skins = step / (0.5 * neighbor->skin);
+  const double radii = step / smallest;
+  const double skins = neighbor->skin > 0.0 ? step / (0.5 * neighbor->skin) : 0.0;
+  const std::string of_skin = skins > 0.0 ? ", " + text(skins) + " of half the skin" : "";
   const std::string root = hydro.settings.rigid.each_alone()
       ? "the own one of each clump"
       : (divided ? "waves at once, near part by Lanczos's process, " : "Lanczos's process, ") +
           std::to_string(last.products) + " products, error " + text(last.error);
   voice.tell("Brownian motion, kT = " + text(kT) + ", seed " + std::to_string(seed) +
              "; root of the mobility by " + root + "; a step moves the smallest sphere by " +
-             text(radii) + " of its radius, " + text(skins) + " of half the skin; " + (midpoint
-             ? "v holds the noise of a step" : "v has no noise") + ", and temperatures and "
-             "pressures from v mean nothing");
+             text(radii) + " of its radius" + of_skin + "; " +
+             (midpoint ? "v holds the noise of a step" : "v has no noise") +
+             ", and temperatures and pressures from v mean nothing");
   if (radii > 0.1)
     voice.warn("keyword temperature: a step moves the smallest sphere by " + text(radii) +
                " of its radius: use a shorter time step");

@@ -457,6 +457,8 @@ def test_steps_that_are_too_long_are_warned_of(tmp_path):
     quiet = [line.replace("timestep 3.0", "timestep 1e-4") for line in lines]
     text = lmp(tmp_path, quiet + [MOVE.format(1.0, 3), "run 1"]).text
     assert "of its radius: use" not in text and "Brownian motion, kT = 1, seed 3" in text
+    text = lmp(tmp_path, lines + ["neighbor 0 bin", MOVE.format(1.0, 3), "run 1"]).text
+    assert "of its radius: use a shorter time step" in text and "skin" not in text
 
 
 def test_a_temperature_that_follows_a_compute_is_that_of_the_step(simulation):

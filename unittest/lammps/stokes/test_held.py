@@ -157,7 +157,7 @@ def test_who_takes_forces_away_to_hold_spheres_is_told_how(tmp_path, style, told
     lines = input_lines(Spheres(X), f"cut_off_distance inf visc {ETA}", str(tmp_path / "data"), fix=False, box=BOX,
                         dt=0.01)
     log = lmp(tmp_path, lines + ["group bed id 1 2", f"fix hold bed {style}", FIX, "run 0"]).log
-    assert ("without inertia that does not hold a sphere: use keyword held GROUP" in log) == told
+    assert ("without inertia a force of 0 does not hold a sphere: use keyword held GROUP" in log) == told
     log = lmp(tmp_path, lines + ["group bed id 1 2", f"fix hold bed {style}", f"{FIX} held bed", "run 0"]).log
     assert "does not hold a sphere" not in log
 
