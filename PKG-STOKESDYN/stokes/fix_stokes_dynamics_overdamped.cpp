@@ -324,7 +324,7 @@ void FixStokesDynamicsOverdamped::advance()
  */
 void FixStokesDynamicsOverdamped::end_of_step()
 {
-  const double dt = sd_next_step(update->dt, fastest(), adapt.tmin, adapt.tmax, adapt.xmax);
+  const double dt = sd_next_step(update->dt, fastest_of_all(), adapt.tmin, adapt.tmax, adapt.xmax);
   last.next_dt = dt;
   if (dt != update->dt) set_step(dt);
 }

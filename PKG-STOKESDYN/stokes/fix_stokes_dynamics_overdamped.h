@@ -150,8 +150,15 @@ class FixStokesDynamicsOverdamped : public RowsFix {
 
   // --- what is told of a step
 
+  /* of this rank, as the last run has left them */
+  struct Left {
+    double dissipation = 0.0, fastest = 0.0;
+  } left;
+  void note_left();
   void watch();
+  double dissipation() const;
   double fastest() const;
+  double fastest_of_all() const;
   double change_of_velocities() const;
   double error_figure() const;
   double smallest_gap() const;

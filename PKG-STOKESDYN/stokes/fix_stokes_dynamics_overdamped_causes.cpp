@@ -74,6 +74,7 @@ void FixStokesDynamicsOverdamped::note_causes(const Hydrodynamics &hydro)
 void FixStokesDynamicsOverdamped::post_run()
 {
   note_causes(hydrodynamics());
+  note_left();
 }
 
 /* Are there as many atoms as in the step of the last velocities, and do they follow from the same? */

@@ -15,8 +15,14 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-/* Power that the spheres lose to the fluid */
 double FixStokesDynamicsOverdamped::compute_scalar()
+{
+  hydrodynamics();    // an error if there is none
+  return sum_of_all(world, within_run() ? dissipation() : left.dissipation);
+}
+
+/* Of this rank: power that its spheres lose to the fluid */
+double FixStokesDynamicsOverdamped::dissipation() const
 {
   const Hydrodynamics &hydro = hydrodynamics();
   double mine = 0.0, s[6] = {0.0};
@@ -24,7 +30,13 @@ double FixStokesDynamicsOverdamped::compute_scalar()
     hydro.ambient.slip(i, s);
     mine += sd_dot(s + 3, output[i] + 6) - sd_dot(output[i], output[i] + 3) + hydro.strain_power(i);
   }
-  return sum_of_all(world, mine);
+  return mine;
+}
+
+/* While atoms have the indices of the last step: commands between two runs give them others. */
+void FixStokesDynamicsOverdamped::note_left()
+{
+  left = {dissipation(), fastest()};
 }
 
 double FixStokesDynamicsOverdamped::compute_vector(int k)
@@ -32,7 +44,7 @@ double FixStokesDynamicsOverdamped::compute_vector(int k)
   hydrodynamics();    // an error if there is none
   const FixStokesDynamicsState *memory = FixStokesDynamicsState::find(lmp);
   if (!memory) return 0.0;
-  const std::function<double()> values[] = {[&] { return fastest(); },
+  const std::function<double()> values[] = {[&] { return fastest_of_all(); },
                                             [&] { return largest_of_all(world, error_figure()); },
                                             [&] { return sqrt(largest_of_all(world, steps.farthest())); },
                                             [&] { return memory->global.iterations; },
@@ -58,7 +70,12 @@ double FixStokesDynamicsOverdamped::pressure_gradient(int d) const
   return gradient[d];
 }
 
-/* By the velocity of the fluid and that beyond it: nobody else writes to those. */
+double FixStokesDynamicsOverdamped::fastest_of_all() const
+{
+  return largest_of_all(world, within_run() ? fastest() : left.fastest);
+}
+
+/* Of this rank, by the velocity of the fluid and that beyond it: nobody else writes to those. */
 double FixStokesDynamicsOverdamped::fastest() const
 {
   const Ambient &ambient = hydrodynamics().ambient;
@@ -67,7 +84,7 @@ double FixStokesDynamicsOverdamped::fastest() const
     for (int d = 0; d < 3; d++) v[d] = output[i][d] + ambient.velocity(i)[d];
     mine = std::max(mine, sd_dot(v, v));
   }
-  return sqrt(largest_of_all(world, mine));
+  return sqrt(mine);
 }
 
 /* Largest |v - v_old| / a of this rank, where velocities have just been found */
@@ -102,21 +119,21 @@ double FixStokesDynamicsOverdamped::error_figure() const
   return 0.5 * update->dt * velocity_change;
 }
 
-/* Between spheres whose centres are within four times the largest radius */
+/* Between spheres whose centres are within four times the largest radius, where they are now: also between two
+ * runs, when atoms have come, gone, or other indices than in the last step */
 double FixStokesDynamicsOverdamped::smallest_gap() const
 {
-  const Hydrodynamics &hydro = hydrodynamics();
-  const std::vector<int> &who = hydro.ambient.who();
-  const bool bound = hydro.settings.rigid.on && atom->molecule_flag;
-  const int n = (int) who.size();
+  const bool bound = hydrodynamics().settings.rigid.on && atom->molecule_flag;
   std::vector<double> x, a, bodies;
   double mine = 0.0;
-  for (int i : who) {
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit) || !output.has(i)) continue;
     x.insert(x.end(), atom->x[i], atom->x[i] + 3);
     a.push_back(atom->radius[i]);
     bodies.push_back(ubuf(bound ? (int64_t) atom->molecule[i] : (int64_t) 0).d);
     mine = std::max(mine, atom->radius[i]);
   }
+  const int n = (int) a.size();
   const double largest = largest_of_all(world, mine);
   if (largest == 0.0) return INFINITY;
   const double reach = 4.0 * largest;

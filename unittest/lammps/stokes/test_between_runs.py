@@ -37,6 +37,19 @@ def test_many_created_atoms(simulation, tmp_path):
     assert sim.n > 20000 and np.array_equal(sim.fix_rows()[:4], before) and not sim.fix_rows()[4:].any()
 
 
+@pytest.mark.parametrize("ids", ["1", "2 4"])
+def test_values_of_the_fix_without_inertia_when_atoms_have_other_indices(simulation, ids):
+    """Dissipation and largest speed are those of the last step, and the smallest gap that of who is there now."""
+    sim = simulation(Spheres(four().x, 1.1), STYLE, box=[(-9, 9)] * 3, fix=False, dt=0.01)
+    sim.commands("variable f atom id^2\nfix pull all addforce v_f 0 0\nfix move all stokes_dynamics/overdamped").run(3)
+    before, power = sim.fix_vector("move"), sim.fix_scalar("move")
+    sim.commands(f"group gone id {ids}\ndelete_atoms group gone compress no")
+    after = sim.fix_vector("move")
+    gap = min(np.linalg.norm(p - q) for k, p in enumerate(sim.x) for q in sim.x[:k]) / 1.1 - 2
+    assert sim.fix_scalar("move") == power and after[0] == before[0] and after[7] == pytest.approx(gap, rel=1e-12)
+    assert sim.run(0).fix_scalar("move") != power and sim.fix_vector("move")[7] == after[7]
+
+
 @pytest.mark.parametrize("gone", ["pair_style none", "pair_style zero 3\npair_coeff * *"])
 def test_numbers_of_the_solve_without_the_pair_style_are_a_clean_error(simulation, gone):
     sim = simulation(four(), STYLE, box=[(-9, 9)] * 3).run()
