@@ -184,25 +184,39 @@ Halo Halo::refined(const std::vector<int> &first) const
   return fine;
 }
 
+void Halo::put_place(const double h[6], const double *x, size_t k, double *out) const
+{
+  for (int d = 0; d < 3; d++) out[d] = x ? x[3 * (size_t) sphere[k] + d] : 0.0;
+  sd_add_edges(h, &edges[3 * k], out);
+}
+
 void Halo::place(const double h[6], const double *x, double *out) const
 {
-  outbox.assign(3 * sphere.size() + 1, 0.0);
-  for (size_t k = 0; k < sphere.size(); k++) {
-    if (x) std::copy_n(x + 3 * (size_t) sphere[k], 3, &outbox[3 * k]);
-    sd_add_edges(h, &edges[3 * k], &outbox[3 * k]);
-  }
+  outbox.resize(3 * sphere.size() + 1);
+  for (size_t k = 0; k < sphere.size(); k++) put_place(h, x, k, &outbox[3 * k]);
   post.carry(outbox.data(), out, 3);
 }
 
 void Halo::extend(const double h[6], std::vector<double> &x,
                   std::initializer_list<std::vector<double> *> columns) const
 {
-  const size_t n = x.size() / 3, all = n + copies;
-  x.resize(3 * all);
-  place(h, x.data(), x.data() + 3 * n);
-  for (auto *column : columns) {
-    column->resize(all);
-    refresh(column->data(), column->data() + n, 1);
+  const size_t n = x.size() / 3, width = 3 + columns.size();
+  outbox.resize(width * sphere.size() + 1);
+  double *out = outbox.data();
+  for (size_t k = 0; k < sphere.size(); k++) {
+    put_place(h, x.data(), k, out);
+    out += 3;
+    for (const auto *column : columns) *out++ = (*column)[sphere[k]];
+  }
+  std::vector<double> came(width * copies + 1);
+  post.carry(outbox.data(), came.data(), (int) width);
+  x.resize(3 * (n + copies));
+  for (auto *column : columns) column->resize(n + copies);
+  const double *in = came.data();
+  for (size_t k = n; k < n + copies; k++) {
+    std::copy_n(in, 3, &x[3 * k]);
+    in += 3;
+    for (auto *column : columns) (*column)[k] = *in++;
   }
 }
 

@@ -55,7 +55,7 @@ class Halo {
    * zeros */
   void place(const double h[6], const double *x, double *out) const;
 
-  /* Behind the rows of x and the columns, those of the copies */
+  /* Behind the rows of x and the columns, those of the copies, in one message to each partner */
   void extend(const double h[6], std::vector<double> &x,
               std::initializer_list<std::vector<double> *> columns) const;
 
@@ -82,6 +82,7 @@ class Halo {
   static Block around(const Lattice &lattice, const std::vector<double> &x, std::vector<double> &f);
   bool find(const Lattice &lattice, double reach, const Block &rows, const Block &wanted,
             const std::vector<double> &f, bool itself);
+  void put_place(const double h[6], const double *x, size_t k, double *out) const;
   bool send_to(int p, const Lattice &lattice, const std::vector<double> &f, const double from[6],
                const double into[6], bool itself);
 };
