@@ -167,6 +167,15 @@ void Halo::reduce(const double *of_copies, double *rows, int width) const
     for (int d = 0; d < width; d++) rows[width * (size_t) sphere[k] + d] += outbox[width * k + d];
 }
 
+void Halo::tell(const int *to, int *from) const
+{
+  Post numbers = post;
+  for (Post::Partner &p : numbers.partners) p.out = to[p.rank];
+  numbers.tell();
+  std::fill_n(from, post.ranks, 0);
+  for (const Post::Partner &p : numbers.partners) from[p.rank] = p.in;
+}
+
 Halo Halo::refined(const std::vector<int> &first) const
 {
   Halo fine(post.world);
@@ -236,6 +245,9 @@ sd_world Halo::ranks() const
   };
   all.reduce = [](void *ctx, const double *copies, double *rows, int width) {
     return callback([=] { static_cast<Halo *>(ctx)->reduce(copies, rows, width); });
+  };
+  all.tell = [](void *ctx, const int *to, int *from) {
+    return callback([=] { static_cast<Halo *>(ctx)->tell(to, from); });
   };
   all.exchange = [](void *ctx, const double *send, const int *to, double *receive, const int *from) {
     const MPI_Comm world = static_cast<Halo *>(ctx)->post.world;

@@ -82,6 +82,7 @@ class Halo {
   static Block around(const Lattice &lattice, const std::vector<double> &x, std::vector<double> &f);
   bool find(const Lattice &lattice, double reach, const Block &rows, const Block &wanted,
             const std::vector<double> &f, bool itself);
+  void tell(const int *to, int *from) const;
   void put_place(const double h[6], const double *x, size_t k, double *out) const;
   bool send_to(int p, const Lattice &lattice, const std::vector<double> &f, const double from[6],
                const double into[6], bool itself);

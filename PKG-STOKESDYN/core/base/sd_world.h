@@ -25,6 +25,9 @@ typedef struct {
    * ranks, and are 0 for the rank itself. */
   sd_status (*exchange)(void *ctx, const double *send, const int *to, double *receive,
                         const int *from);
+  /* view NEAR: from [ranks] = how many numbers each rank has in its `to` [ranks] for this one. It is 0 but
+   * of ranks that have ghosts of this one's spheres, or the other way round. NULL: not to be had */
+  sd_status (*tell)(void *ctx, const int *to, int *from);
   /* view NEAR, refresh the other way: rows [width n] += those of their ghosts. NULL: not to be had */
   sd_status (*reduce)(void *ctx, const double *ghosts, double *rows, int width);
 } sd_world;

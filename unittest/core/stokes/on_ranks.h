@@ -124,10 +124,20 @@ static inline sd_status rank_exchange(void *ctx, const double *send, const int *
   return SD_OK;
 }
 
+static inline sd_status rank_tell(void *ctx, const int *to, int *from)
+{
+  const rank *r = ctx;
+  memcpy(r->all->count[r->me], to, sizeof(int) * (size_t) r->ranks);
+  rank_meet(r);
+  for (int p = 0; p < r->ranks; p++) from[p] = r->all->count[p][r->me];
+  rank_meet(r);
+  return SD_OK;
+}
+
 static inline sd_world rank_world(rank *r)
 {
   return (sd_world){.ctx = r, .me = r->me, .ranks = r->ranks, .refresh = rank_refresh, .reduce = rank_reduce, .sum = rank_sum,
-                    .spread = rank_spread, .collect = rank_collect, .exchange = rank_exchange};
+                    .spread = rank_spread, .collect = rank_collect, .exchange = rank_exchange, .tell = rank_tell};
 }
 
 /* What all processes see and can write; zero, munmap in the end */

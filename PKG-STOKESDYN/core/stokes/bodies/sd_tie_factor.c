@@ -8,26 +8,21 @@
 #include "sd_linear.h"
 #include "sd_room.h"
 #include "sd_tie_approach.h"
+#include "sd_tie_border.h"
 
 /* In units of the drags of the bodies: pairs whose block is smaller are left out of the factor, as
  * is such fill. */
 static const double weak = 0.8, drop = 0.1;
-/* Norm of its block from which a pair is too stiff for different weights on its bodies: of random
- * suspensions with gaps from 0.1 to 1e-6 none takes more products with 12 than without weights; with
- * 18 some do. */
+/* Norm of its block from which a pair is stiff: too much so for different weights on its bodies, and it severs
+ * where more than two ranks share them. A melt of 11 000 spheres (volume fraction 0.3, gaps counted from 1e-2
+ * to 1e-6) then takes as many products with the mobility on four ranks as on one; with 400 half as many more
+ * at 1e-3, whose pairs have 250. */
 static const double stiff = 12.0;
-/* And from which it severs: with gaps from 1e-3 on, whose pairs have 250, a melt of 11 000 spheres at a volume
- * fraction of 0.3 takes as many products on two ranks as on one, with 1e-4 half as many more. */
-static const double severing = 400.0;
-
-/* What other ranks know of a sphere: whose it is, row and number of the body there; from the centre
- * of the body to it; scales and block H_ii of the body, scaled */
-enum { RANK, ROW, BODY, ARM, SCALE = ARM + 3, BLOCK = SCALE + 6, PLACE = BLOCK + 36 };
 
 typedef struct {
   /* [36 bodies] blocks of H_ii, scaled; [bodies and others] the square of the norm of its largest H_ij */
   double *diagonal, *largest;
-  /* of the copies [PLACE]; the body that each belongs to, among those of the factor, -1: none;
+  /* of the copies [SD_PLACE]; the body that each belongs to, among those of the factor, -1: none;
    * does it stand for its sphere, which may have more copies? */
   int copies;
   double *place;
@@ -38,7 +33,7 @@ typedef struct {
 static int layered(const sd_bodies *A)
 {
   const sd_world *world = &A->tie->L->world;
-  return world->ranks > 1 && world->refresh && world->reduce;
+  return world->ranks > 1 && world->refresh && world->tell && world->exchange && world->reduce;
 }
 
 static int body_of(const sd_bodies *A, int sphere)
@@ -73,7 +68,7 @@ static const double *arm_of(const sd_bodies *A, const assembly *a, int sphere)
 {
   static const double none[3] = {0.0};
   const int n = A->spheres.n;
-  if (sphere >= n) return a->place + PLACE * (long) (sphere - n) + ARM;
+  if (sphere >= n) return a->place + SD_PLACE * (long) (sphere - n) + SD_PLACE_ARM;
   const double *arm = sd_bodies_films(A).arm;
   return arm ? arm + 3 * (long) sphere : none;
 }
@@ -137,19 +132,18 @@ static void find_diagonal(const sd_bodies *A, assembly *a)
 static sd_status tell_places(const sd_bodies *A, assembly *a)
 {
   const sd_lubrication *L = A->tie->L;
-  double *mine = malloc(sizeof(double) * PLACE * ((size_t) L->n + 1));
+  double *mine = malloc(sizeof(double) * SD_PLACE * ((size_t) L->n + 1));
   sd_status status = sd_world_agree(&L->world, mine ? SD_OK : SD_ENOMEMORY);
   for (int i = 0; i < L->n && status == SD_OK; i++) {
-    double *row = mine + PLACE * (long) i;
+    double *row = mine + SD_PLACE * (long) i;
     const long b = body_of(A, i);
-    row[RANK] = L->world.me;
-    row[ROW] = i;
-    row[BODY] = (double) b;
-    memcpy(row + ARM, arm_of(A, a, i), 3 * sizeof(double));
-    memcpy(row + SCALE, A->tie->scale + 6 * b, 6 * sizeof(double));
-    memcpy(row + BLOCK, a->diagonal + 36 * b, 36 * sizeof(double));
+    row[SD_PLACE_RANK] = L->world.me;
+    row[SD_PLACE_ROW] = i;
+    row[SD_PLACE_BODY] = (double) b;
+    memcpy(row + SD_PLACE_ARM, arm_of(A, a, i), 3 * sizeof(double));
+    memcpy(row + SD_PLACE_SCALE, A->tie->scale + 6 * b, 6 * sizeof(double));
   }
-  if (status == SD_OK) status = L->world.refresh(L->world.ctx, mine, a->place, PLACE);
+  if (status == SD_OK) status = L->world.refresh(L->world.ctx, mine, a->place, SD_PLACE);
   free(mine);
   return status;
 }
@@ -183,18 +177,18 @@ static sd_status know_others(const sd_bodies *A, assembly *a)
   for (long k = 0; a->copies > 0 && k < t->L->count; k++) {
     const int j = t->L->pair[k][1] - t->L->n;
     if (j < 0 || a->stands[j]) continue;
-    const double *row = a->place + PLACE * (long) j;
+    const double *row = a->place + SD_PLACE * (long) j;
     a->stands[j] = 1; /* seen */
-    if (row[SCALE] == 0.0) continue;
-    who[count++] = (identity){(int) row[RANK], (int) row[BODY], (int) row[ROW], j};
+    if (row[SD_PLACE_SCALE] == 0.0) continue;
+    who[count++] = (identity){(int) row[SD_PLACE_RANK], (int) row[SD_PLACE_BODY], (int) row[SD_PLACE_ROW], j};
   }
   qsort(who, (size_t) count, sizeof(identity), by_identity);
   for (int k = 0; k < count; k++) {
     const identity *p = who + k, *last = k > 0 ? p - 1 : NULL;
     const int known = last && last->rank == p->rank && last->body == p->body;
     if (!known) {
-      const double *row = a->place + PLACE * (long) p->copy;
-      memcpy(t->scale + 6 * (long) (bodies + t->others), row + SCALE, 6 * sizeof(double));
+      const double *row = a->place + SD_PLACE * (long) p->copy;
+      memcpy(t->scale + 6 * (long) (bodies + t->others), row + SD_PLACE_SCALE, 6 * sizeof(double));
       t->copy[t->others++] = p->copy;
     }
     a->body[p->copy] = bodies + t->others - 1;
@@ -229,8 +223,16 @@ static int number_of(const sd_bodies *A, const assembly *a, int sphere)
   return b >= 0 && sd_tie_binds(A, b) ? b : -1;
 }
 
-/* The block of pair k, scaled, if it is not weak. Pairs beyond are those of spheres that stand for
- * themselves, each once. */
+/* Of a pair beyond: what two bodies of one rank resist, that rank tells (sd_tie_border.h). The spheres
+ * stand for themselves, so that each pair is there once. */
+static int is_ours_to_add(const sd_bodies *A, const assembly *a, int i, int j)
+{
+  const int p = i - A->tie->L->n, q = j - A->tie->L->n;
+  return a->stands[p] && a->stands[q] &&
+      a->place[SD_PLACE * (long) p + SD_PLACE_RANK] != a->place[SD_PLACE * (long) q + SD_PLACE_RANK];
+}
+
+/* The block of pair k, scaled, if it is not weak */
 static sd_status add_block(const sd_bodies *A, assembly *a, long k)
 {
   sd_tie *t = A->tie;
@@ -238,7 +240,7 @@ static sd_status add_block(const sd_bodies *A, assembly *a, long k)
   const int i = L->pair[k][0], j = L->pair[k][1];
   const int p = number_of(A, a, i), q = number_of(A, a, j);
   if (p < 0 || q < 0 || p == q) return SD_OK;
-  if (i >= L->n && !(a->stands[i - L->n] && a->stands[j - L->n])) return SD_OK;
+  if (i >= L->n && !is_ours_to_add(A, a, i, j)) return SD_OK;
   const double *rp = arm_of(A, a, i), *rq = arm_of(A, a, j);
   const double *sp = t->scale + 6 * (long) p, *sq = t->scale + 6 * (long) q;
   const int arms = has_arm(rp) || has_arm(rq);
@@ -265,19 +267,20 @@ static sd_status factor_reserve(const sd_bodies *A, assembly *a)
   const size_t all = bodies + (size_t) a->copies, copies = (size_t) a->copies;
   a->diagonal = calloc(36 * bodies + 1, number);
   a->largest = calloc(all + 1, number);
-  a->place = malloc(number * (PLACE * copies + 1));
+  a->place = malloc(number * (SD_PLACE * copies + 1));
   a->body = malloc(sizeof(int) * (copies + 1));
   a->stands = malloc(copies + 1);
   t->others = t->severed = 0;
   const int there = a->diagonal && a->largest && a->place && a->body && a->stands &&
       sd_reserve(&t->scale, number, 6 * all, &t->most_scales) &&
+      sd_reserve(&t->weight, number, bodies, &t->most_weights) &&
       sd_reserve(&t->all, number, 6 * all, &t->most_all) &&
       sd_reserve(&t->copy, sizeof(int), copies, &t->most_copies) &&
       sd_reserve(&t->copies, number, 6 * copies, &t->most_rows_there);
   return there ? SD_OK : SD_ENOMEMORY;
 }
 
-/* What needs no other rank any more */
+/* All that no other rank knows of is eliminated. */
 static sd_status assemble(const sd_bodies *A, assembly *a)
 {
   sd_tie *t = A->tie;
@@ -286,34 +289,25 @@ static sd_status assemble(const sd_bodies *A, assembly *a)
   if (status == SD_OK) status = sd_block_cholesky_begin(&t->factor, bodies + t->others);
   for (int b = 0; b < bodies && status == SD_OK; b++)
     status = sd_block_cholesky_add(&t->factor, b, b, a->diagonal + 36 * (long) b);
-  for (int o = 0; o < t->others && status == SD_OK; o++)
-    status = sd_block_cholesky_add(&t->factor, bodies + o, bodies + o,
-                                   a->place + PLACE * (long) t->copy[o] + BLOCK);
   const long pairs = t->L->count + (a->copies > 0 ? t->L->beyond : 0);
   for (long k = 0; k < pairs && status == SD_OK; k++) status = add_block(A, a, k);
+  if (status == SD_OK && a->copies > 0) sd_tie_border_put_off(A);
   return status == SD_OK ? sd_block_cholesky_factor(&t->factor, drop) : status;
 }
 
-/* W, which goes into the scales of this rank's bodies: nobody else reads those any more; and who is severed. */
+/* W of this rank's bodies by how many ranks have each; and who is severed */
 static sd_status weigh(const sd_bodies *A, const assembly *a)
 {
   sd_tie *t = A->tie;
-  const sd_lubrication *L = t->L;
-  const int bodies = sd_bodies_count(A);
-  double *ranks = t->all, severed = 0.0;
-  memset(t->copies, 0, sizeof(double) * (size_t) a->copies);
-  memset(t->rows, 0, sizeof(double) * (size_t) L->n);
-  for (int o = 0; o < t->others; o++) t->copies[t->copy[o]] = 1.0;
-  sd_status status = L->world.reduce(L->world.ctx, t->copies, t->rows, 1);
-  for (int b = 0; b < bodies; b++) ranks[b] = 1.0;
-  for (int i = 0; i < L->n; i++) ranks[body_of(A, i)] += t->rows[i];
-  for (int b = 0; b < bodies; b++) {
+  double severed = 0.0;
+  for (int b = 0; b < sd_bodies_count(A); b++) {
+    const double ranks = t->weight[b];
     const int tight = a->largest[b] >= stiff * stiff;
-    for (int d = 0; d < 6 && !tight; d++) t->scale[6 * (long) b + d] /= sqrt(ranks[b]);
-    if (a->largest[b] >= severing * severing && ranks[b] > 1.0) severed = 1.0;
+    t->weight[b] = 1.0 / sqrt(tight ? fmin(ranks, 2.0) : ranks);
+    if (tight && ranks > 1.0) severed = 1.0;
   }
-  if (status == SD_OK) status = sd_world_sum(&L->world, &severed, 1);
-  t->severed = severed > 0.0;
+  const sd_status status = sd_world_sum(&t->L->world, &severed, 1);
+  t->severed = t->L->world.ranks > 2 && severed > 0.0;
   return status;
 }
 
@@ -325,6 +319,9 @@ sd_status sd_tie_factor(const sd_bodies *A)
   if (status == SD_OK) find_diagonal(A, &a);
   if (status == SD_OK && layered(A)) status = tell_places(A, &a);
   if (status == SD_OK) status = sd_world_agree(world, assemble(A, &a));
+  if (status == SD_OK && layered(A)) status = sd_tie_border_share(A, a.place, A->tie->weight);
+  if (status == SD_OK) status = sd_block_cholesky_finish(&A->tie->factor, drop);
+  status = sd_world_agree(world, status);
   if (status == SD_OK && layered(A)) status = weigh(A, &a);
   free(a.diagonal);
   free(a.largest);
@@ -366,15 +363,38 @@ static sd_status factor_give_back(const sd_bodies *A)
   return status;
 }
 
+static void weigh_all(const sd_bodies *A)
+{
+  const sd_tie *t = A->tie;
+  for (long b = 0; b < sd_bodies_count(A); b++)
+    for (int d = 0; d < 6; d++) t->all[6 * b + d] *= t->weight[b];
+}
+
+/* What all ranks together do to bodies at the border */
+static sd_status meet_at_border(const sd_bodies *A)
+{
+  weigh_all(A);
+  sd_status status = factor_fetch(A);
+  if (status != SD_OK) return status;
+  sd_block_cholesky_middle(&A->tie->factor, A->tie->all);
+  status = factor_give_back(A);
+  weigh_all(A);
+  return status;
+}
+
 sd_status sd_tie_precondition(const sd_bodies *A, const double *r, double *z)
 {
   const sd_tie *t = A->tie;
   const long size = 6 * (long) sd_bodies_count(A);
   sd_status status = SD_OK;
   for (long j = 0; j < size; j++) t->all[j] = t->scale[j] * r[j];
-  if (layered(A)) status = factor_fetch(A);
-  if (status == SD_OK) sd_block_cholesky_apply(&t->factor, t->all);
-  if (status == SD_OK && layered(A)) status = factor_give_back(A);
+  if (layered(A)) {
+    memset(t->all + size, 0, sizeof(double) * 6 * (size_t) t->others);
+    sd_block_cholesky_forth(&t->factor, t->all);
+    status = meet_at_border(A);
+    sd_block_cholesky_back(&t->factor, t->all);
+  } else
+    sd_block_cholesky_apply(&t->factor, t->all);
   for (long j = 0; j < size; j++) z[j] = t->scale[j] * t->all[j];
   return status;
 }

@@ -16,11 +16,13 @@ typedef struct sd_tie {
   /* of the bodies of this rank and of `others`, those of other ranks that are near */
   sd_block_cholesky factor;
   int others;
-  /* does a pair as stiff as contact chain bodies together across ranks? The same on all of them */
+  /* does a stiff pair chain bodies together that more than two ranks share? The same on all of them */
   int severed;
   /* [6 (bodies + others)] 1 over the roots of the diagonal of H_0; 0: nobody is near to this body,
    * or this of its velocity is given */
   double *scale;
+  /* [bodies] W of sd_tie_factor.h */
+  double *weight;
   /* [others] the copy, among the n_all - n of L, that stands for it */
   int *copy;
   /* X by pairs of L and those beyond, c; by spheres, L_ii and that of K^T X K together; what springs
@@ -28,7 +30,7 @@ typedef struct sd_tie {
   double *spring, *stiff, *face, *faces_there;
   /* scratch: by bodies, by bodies and others, by spheres, by copies */
   double *vectors, *all, *rows, *copies;
-  size_t most_scales, most_copies, most_springs, most_stiff, most_vectors, most_all, most_rows,
+  size_t most_scales, most_weights, most_copies, most_springs, most_stiff, most_vectors, most_all, most_rows,
       most_rows_there, most_faces, most_faces_there;
 } sd_tie;
 

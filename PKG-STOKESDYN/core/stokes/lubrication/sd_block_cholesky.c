@@ -20,6 +20,8 @@ typedef struct {
   int before, after;
   /* where it is in the list of the node that is looked at, if stamp says so */
   int seen, stamp;
+  /* is it put off, and in no queue? */
+  int late;
   /* the norms of the fill that it has lost */
   float lost;
 } node;
@@ -110,6 +112,7 @@ static void cholesky_give_back(struct sd_elimination *w, int b)
 static void leave_queue(struct sd_elimination *w, int p)
 {
   const node *this = w->node + p;
+  if (this->late) return;
   if (this->before >= 0)
     w->node[this->before].after = this->after;
   else
@@ -119,6 +122,7 @@ static void leave_queue(struct sd_elimination *w, int p)
 
 static void join_queue(struct sd_elimination *w, int p)
 {
+  if (w->node[p].late) return;
   int *first = w->queue + w->node[p].degree;
   w->node[p].before = -1;
   w->node[p].after = *first;
@@ -209,6 +213,11 @@ sd_status sd_block_cholesky_add(sd_block_cholesky *f, int p, int q, const double
   memset(cholesky_block_of(w, b), 0, sizeof(float) * SD_BLOCK);
   cholesky_add(A, 0, cholesky_block_of(w, b));
   return connect(w, p, q, b) ? SD_OK : SD_ENOMEMORY;
+}
+
+void sd_block_cholesky_put_off(sd_block_cholesky *f, int p)
+{
+  f->work->node[p].late = 1;
 }
 
 /* --- elimination --- */
@@ -307,16 +316,12 @@ static sd_status eliminate(sd_block_cholesky *f, int k, int p, float drop)
 /* Of its first value, added to a diagonal. With 1.2e-7 tangles of stiffness 3e7 failed. */
 static const float safety = 3e-7f;
 
-sd_status sd_block_cholesky_factor(sd_block_cholesky *f, double drop)
+/* All in the queues, as columns begin ... end - 1 */
+static sd_status eliminate_all(sd_block_cholesky *f, int begin, int end, double drop)
 {
   struct sd_elimination *w = f->work;
   sd_status status = SD_OK;
-  f->first[0] = 0;
-  for (int p = f->n - 1; p >= 0; p--) {
-    for (int d = 0; d < 6; d++) pivot_of(w, p)[(SD_BLOCK_LANES + 1) * d] *= 1.0f + safety;
-    join_queue(w, p);
-  }
-  for (int k = 0, degree = 0; k < f->n && status == SD_OK; k++) {
+  for (int k = begin, degree = 0; k < end && status == SD_OK; k++) {
     while (w->queue[degree] < 0) degree++;
     status = eliminate(f, k, w->queue[degree], (float) drop);
     if (degree > 0) degree--; /* no neighbour lost more than one */
@@ -325,15 +330,54 @@ sd_status sd_block_cholesky_factor(sd_block_cholesky *f, double drop)
   return status;
 }
 
-void sd_block_cholesky_apply(const sd_block_cholesky *f, double *x)
+sd_status sd_block_cholesky_factor(sd_block_cholesky *f, double drop)
 {
-  float *v = f->vector;
-  memset(v, 0, sizeof(float) * SD_BLOCK_LANES * (size_t) f->n);
-  for (long p = 0; p < f->n; p++)
-    for (int r = 0; r < 6; r++) v[SD_BLOCK_LANES * p + r] = (float) x[6 * p + r];
-  f->work->kernels->apply(f);
-  for (long p = 0; p < f->n; p++)
-    for (int r = 0; r < 6; r++) x[6 * p + r] = v[SD_BLOCK_LANES * p + r];
+  struct sd_elimination *w = f->work;
+  f->first[0] = 0;
+  f->early = 0;
+  for (int p = f->n - 1; p >= 0; p--) {
+    for (int d = 0; d < 6; d++) pivot_of(w, p)[(SD_BLOCK_LANES + 1) * d] *= 1.0f + safety;
+    join_queue(w, p);
+    f->early += !w->node[p].late;
+  }
+  return eliminate_all(f, 0, f->early, drop);
+}
+
+sd_status sd_block_cholesky_finish(sd_block_cholesky *f, double drop)
+{
+  struct sd_elimination *w = f->work;
+  for (int p = f->n - 1; p >= 0; p--) {
+    if (!w->node[p].late) continue;
+    w->node[p].late = 0;
+    join_queue(w, p);
+  }
+  return eliminate_all(f, f->early, f->n, drop);
+}
+
+static void read_block(const float *A, int turned, double B[36])
+{
+  for (int r = 0; r < 6; r++)
+    for (int c = 0; c < 6; c++) B[turned ? 6 * c + r : 6 * r + c] = A[SD_BLOCK_LANES * r + c];
+}
+
+int sd_block_cholesky_degree(const sd_block_cholesky *f, int p)
+{
+  return f->work->node[p].degree;
+}
+
+void sd_block_cholesky_left(const sd_block_cholesky *f, int p, sd_block_visit *visit, void *ctx)
+{
+  const struct sd_elimination *w = f->work;
+  const node *this = w->node + p;
+  double B[36];
+  read_block(pivot_of(w, p), 0, B);
+  for (int d = 0; d < 6; d++) B[7 * d] += this->lost;
+  visit(ctx, p, p, B);
+  for (int k = 0; k < this->degree; k++) {
+    const end_of_edge *e = w->end + this->list + k;
+    read_block(cholesky_block_of(w, e->block), e->turned, B);
+    visit(ctx, p, e->node, B);
+  }
 }
 
 void sd_block_cholesky_free(sd_block_cholesky *f)

@@ -9,6 +9,9 @@
  * In single precision throughout, more than which a preconditioner has no need of: what rounding
  * takes from a diagonal is about its first value times 6e-8, and five times that is added to it
  * before, so that no pivot fails. In a system of 1 and stiffnesses of 1e6 that is a third of 1.
+ *
+ * Nodes may be put off. What the others leave of them, A_qq - A_qp A_pp^-1 A_pq, can then be read
+ * and added to, as several ranks do that share these nodes, before they are eliminated as well.
  * Source: Ajiz & Jennings, Int. J. Numer. Methods Eng. 20, 949 (1984), here for blocks. */
 #ifndef SD_BLOCK_CHOLESKY_H
 #define SD_BLOCK_CHOLESKY_H
@@ -21,7 +24,8 @@ enum { SD_BLOCK_LANES = 8 };
 
 /* Zero-initialise; made again with the memory that it has; sd_block_cholesky_free in the end. */
 typedef struct {
-  int n;
+  /* nodes; so many of them are not put off */
+  int n, early;
   /* [n] nodes in the order of elimination; [n + 1] their columns; by entry of a column: its node */
   int *order;
   long *first;
@@ -37,11 +41,24 @@ typedef struct {
 sd_status sd_block_cholesky_begin(sd_block_cholesky *f, int n);
 /* A_pq += B, row-major, and A_qp += B^T; of p = q B, symmetric. SD_OK; SD_ENOMEMORY */
 sd_status sd_block_cholesky_add(sd_block_cholesky *f, int p, int q, const double B[36]);
-/* What has been added is used up. SD_OK; SD_ENOMEMORY; SD_ESINGULAR: A is not positive definite;
- * SD_ENOTFINITE. */
+void sd_block_cholesky_put_off(sd_block_cholesky *f, int p);
+/* Eliminates all that are not put off: what has been added is used up. SD_OK; SD_ENOMEMORY;
+ * SD_ESINGULAR: A is not positive definite; SD_ENOTFINITE. */
 sd_status sd_block_cholesky_factor(sd_block_cholesky *f, double drop);
+/* Visits what that has left of node p, which was put off: q = p, with the fill it has lost, and each
+ * q of `degree` with which it has a block. B [36] as in sd_block_cholesky_add */
+typedef void sd_block_visit(void *ctx, int p, int q, const double B[36]);
+int sd_block_cholesky_degree(const sd_block_cholesky *f, int p);
+void sd_block_cholesky_left(const sd_block_cholesky *f, int p, sd_block_visit *visit, void *ctx);
+/* And those that are put off. Status as of sd_block_cholesky_factor */
+sd_status sd_block_cholesky_finish(sd_block_cholesky *f, double drop);
 /* x [6n] becomes P^-1 x */
 void sd_block_cholesky_apply(const sd_block_cholesky *f, double *x);
+/* The same in three parts, P^-1 = back middle forth, in which forth and its transpose back are 1 where
+ * nodes are put off, and middle is about these alone. x of them may change on the way. */
+void sd_block_cholesky_forth(const sd_block_cholesky *f, double *x);
+void sd_block_cholesky_middle(const sd_block_cholesky *f, double *x);
+void sd_block_cholesky_back(const sd_block_cholesky *f, double *x);
 void sd_block_cholesky_free(sd_block_cholesky *f);
 
 SD_END_C

@@ -25,8 +25,9 @@ struct sd_block_kernels {
   /* Of blocks C_q^T, C_r^T of a column, first q and then `count` r: pivot -= C_q C_q^T, and the
    * targets by r */
   void (*subtract)(const float *column, float *pivot, int count, sd_block_target *target);
-  /* f->vector becomes P^-1 of it */
-  void (*apply)(const sd_block_cholesky *f);
+  /* f->vector by columns begin ... end - 1 of P = C C^T: C^-1, and C^-T in the order back */
+  void (*forth)(const sd_block_cholesky *f, long begin, long end);
+  void (*back)(const sd_block_cholesky *f, long begin, long end);
 };
 
 SD_KERNEL_TABLES(struct sd_block_kernels, sd_block);

@@ -144,10 +144,10 @@ INLINE void backward(const float *A, const float *v, float *sums)
     AT(sums + k) += AT(A + k) * AT(v + k % ROW);
 }
 
-static void block_apply(const sd_block_cholesky *f)
+static void block_forth(const sd_block_cholesky *f, long begin, long end)
 {
   float *v = f->vector;
-  for (long k = 0; k < f->n; k++) {
+  for (long k = begin; k < end; k++) {
     float *at = v + ROW * (long) f->order[k], y[ROW] = {0.0f};
     for (int c = 0; c < 6; c++) at[c] = -at[c];
     forward(f->inverse + SD_BLOCK * k, at, y);
@@ -155,7 +155,12 @@ static void block_apply(const sd_block_cholesky *f)
     for (long e = f->first[k]; e < f->first[k + 1]; e++)
       forward(f->column + SD_BLOCK * e, y, v + ROW * (long) f->row[e]);
   }
-  for (long k = f->n - 1; k >= 0; k--) {
+}
+
+static void block_back(const sd_block_cholesky *f, long begin, long end)
+{
+  float *v = f->vector;
+  for (long k = end - 1; k >= begin; k--) {
     float *at = v + ROW * (long) f->order[k], sums[SD_BLOCK] = {0.0f}, x[SD_BLOCK] = {0.0f};
     for (long e = f->first[k + 1] - 1; e >= f->first[k]; e--)
       backward(f->column + SD_BLOCK * e, v + ROW * (long) f->row[e], sums);
@@ -165,4 +170,4 @@ static void block_apply(const sd_block_cholesky *f)
   }
 }
 
-const struct sd_block_kernels SD_KERNELS(sd_block) = {block_divide, block_subtract, block_apply};
+const struct sd_block_kernels SD_KERNELS(sd_block) = {block_divide, block_subtract, block_forth, block_back};

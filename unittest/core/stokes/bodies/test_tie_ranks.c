@@ -1,5 +1,5 @@
-/* Films on several ranks (sd_tie_factor.h). Each has the factor of its own bodies and a layer beyond; the answer is that of one
- * rank, in as many products with the mobility, and not in many more with the films. */
+/* Films on several ranks (sd_tie_factor.h). Each has the factor of its own bodies and shares that of a layer with others; the answer
+ * is that of one rank, in as many products with the mobility, on two ranks in as many with the films, and on four not in many more. */
 #include "on_ranks.h"
 
 #include "settling.h"
@@ -120,10 +120,10 @@ static void go_on(settling *s, const double *V, double step)
 static void films_of_ranks_are_those_of_one(void **state)
 {
   (void) state;
-  /* with stiff pairs, and with none: products with L, over those of one rank */
+  /* with stiff pairs, and with none: products with L on two ranks and on four, over those of one */
   static const struct {
-    double phi, gap, most;
-  } of[] = {{0.1, 1e-6, 3.0}, {0.5, 1e-6, 3.0}, {0.4, 0.1, 1.25}};
+    double phi, gap, most[2];
+  } of[] = {{0.1, 1e-6, {1.1, 1.8}}, {0.5, 1e-6, {1.15, 2.0}}, {0.4, 0.1, {1.1, 1.1}}};
   answer *found = ranks_memory(sizeof(answer));
   for (int e = 0; e < 3; e++) {
     settling *s = settling_create(N, of[e].phi, of[e].gap);
@@ -146,7 +146,7 @@ static void films_of_ranks_are_those_of_one(void **state)
       print_message("phi %.1f, gaps %g, %d ranks: %d products, %ld with L", of[e].phi, of[e].gap, ranks, found->products,
                     found->within);
       assert_true(found->products <= products + 1);
-      assert_true((double) found->within <= of[e].most * (double) within);
+      assert_true(ranks == 1 || (double) found->within <= of[e].most[ranks > 2] * (double) within);
       solve_on(ranks, s, found, 1, 1e-3); /* as it stands, from what it found */
       print_message("; again %d, %ld", found->products, found->within);
       assert_true(found->products <= 2);

@@ -54,13 +54,18 @@ static matrix *tangle(double stiffest)
   return A;
 }
 
-static sd_status make(sd_block_cholesky *f, const matrix *A, double drop)
+static void add_all(sd_block_cholesky *f, const matrix *A)
 {
-  assert_int_equal(sd_block_cholesky_begin(f, NODES), SD_OK);
   for (int p = 0; p < NODES; p++)
     assert_int_equal(sd_block_cholesky_add(f, p, p, A->diagonal + 36 * p), SD_OK);
   for (int k = 0; k < A->count; k++)
     assert_int_equal(sd_block_cholesky_add(f, A->pair[k][0], A->pair[k][1], A->block + 36 * k), SD_OK);
+}
+
+static sd_status make(sd_block_cholesky *f, const matrix *A, double drop)
+{
+  assert_int_equal(sd_block_cholesky_begin(f, NODES), SD_OK);
+  add_all(f, A);
   return sd_block_cholesky_factor(f, drop);
 }
 
@@ -85,6 +90,50 @@ static void without_dropping_it_is_exact(void **state)
 }
 
 /* P >= A, and not equal: A^-1 - P^-1 is positive semidefinite, and not zero. */
+/* The middle of what has been put off: its columns are those of the inverse of what the elimination leaves */
+static void note_block(void *ctx, int p, int q, const double B[36])
+{
+  double *left = ctx;
+  for (int e = 0; e < 36; e++) left[SIZE * (6 * p + e / 6) + 6 * q + e % 6] = B[e];
+}
+
+static void nodes_can_be_put_off(void **state)
+{
+  (void) state;
+  const int late[] = {2, 7, 10};
+  sd_block_cholesky f = {0};
+  matrix *A = tangle(10.0);
+  double *left = calloc(SIZE * SIZE, sizeof(double)), b[SIZE], x[SIZE], whole[SIZE];
+  assert_int_equal(sd_block_cholesky_begin(&f, NODES), SD_OK);
+  for (int k = 0; k < 3; k++) sd_block_cholesky_put_off(&f, late[k]);
+  add_all(&f, A);
+  assert_int_equal(sd_block_cholesky_factor(&f, 0.0), SD_OK);
+  for (int k = 0; k < 3; k++) sd_block_cholesky_left(&f, late[k], note_block, left);
+  assert_int_equal(sd_block_cholesky_finish(&f, 0.0), SD_OK);
+  for (int i = 0; i < SIZE; i++) b[i] = x[i] = whole[i] = cos(i);
+  sd_block_cholesky_apply(&f, whole);
+  sd_block_cholesky_forth(&f, x);
+  double before[SIZE];
+  memcpy(before, x, sizeof(x));
+  sd_block_cholesky_middle(&f, x);
+  for (int k = 0; k < 3; k++) /* S x = what forth has left */
+    for (int r = 6 * late[k]; r < 6 * late[k] + 6; r++) {
+      double sum = 0.0;
+      for (int j = 0; j < SIZE; j++) sum += left[SIZE * r + j] * x[j];
+      CHECK_NEAR(sum, before[r], 1e-4);
+    }
+  sd_block_cholesky_back(&f, x);
+  for (int i = 0; i < SIZE; i++) {
+    double sum = 0.0;
+    for (int j = 0; j < SIZE; j++) sum += A->dense[SIZE * i + j] * x[j];
+    CHECK_NEAR(sum, b[i], 1e-4);
+    CHECK_NEAR(x[i], whole[i], 1e-5);
+  }
+  free(A);
+  free(left);
+  sd_block_cholesky_free(&f);
+}
+
 static void what_is_dropped_makes_it_larger(void **state)
 {
   (void) state;
@@ -192,7 +241,8 @@ static worked work_with(const struct sd_block_kernels *kernels)
   for (int k = 0; k < 5; k++) memcpy(inverse + SD_BLOCK * k, w.inverse, sizeof(w.inverse));
   const sd_block_cholesky f = {
       .n = 5, .order = order, .first = first, .row = row, .inverse = inverse, .column = w.column, .vector = w.vector};
-  kernels->apply(&f);
+  kernels->forth(&f, 0, 5);
+  kernels->back(&f, 0, 5);
   return w;
 }
 
@@ -213,6 +263,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(without_dropping_it_is_exact),
+      cmocka_unit_test(nodes_can_be_put_off),
       cmocka_unit_test(what_is_dropped_makes_it_larger),
       cmocka_unit_test(rounding_fails_no_pivot),
       cmocka_unit_test(a_chain_has_no_fill),

@@ -51,7 +51,7 @@ static void a_failure_of_the_caller_is_returned(void **state)
   double *work = malloc(sizeof(double) * SD_SOLVE_WORK(N, 3));
   for (int k = 0; k < ENGINES; k++) {
     sd_mobility_scene where = whole(&s, 3, &list.pairs);
-    where.world = (sd_world){&said, 0, 1, fails, NULL, fails, fails, NULL, NULL};
+    where.world = (sd_world){&said, 0, 1, fails, NULL, fails, fails, NULL, NULL, NULL};
     sd_mobility m = {0};
     assert_int_equal(sd_mobility_place(&m, engines[k], &where), SD_OK);
     assert_int_equal(sd_mobility_apply(&m, slip, u), SD_ECALLBACK);
