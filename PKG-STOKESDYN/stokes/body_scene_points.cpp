@@ -93,8 +93,9 @@ void BodyScene::put_points()
   whole_shells.resize(n + 1);
   for (int k = 0; k < n; k++)
     whole_shells[k] = (char) sd_multiblob_mask_is_whole(of_points.spheres.mask + k);
-  faces = {scene.shells->faces(), of_points.spheres.turn, whole_shells.data(),
-           of_points.spheres.kind, of_points.spheres.first};
+  const double *turn = poses.clumps().empty() ? nullptr : of_points.spheres.turn;    // free ones do not turn
+  faces = {scene.shells->faces(), turn, whole_shells.data(), of_points.spheres.kind,
+           of_points.spheres.first};
   bodies.faces = &faces;
   alone.n = all;
   of_points.pairs = bodies.apply;

@@ -69,7 +69,7 @@ typedef struct {
 /* What comes out, in arrays of the caller */
 typedef struct {
   /* [points] forces on the fluid, as the last product left them: as a guess they give the same V
-   * again */
+   * again. Those of free shells are a step of the preconditioner further */
   double *l;
   /* with a tie, [spheres]: the velocities that go with l in a guess */
   double *v_with_l;
