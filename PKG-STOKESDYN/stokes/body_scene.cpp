@@ -35,11 +35,12 @@ void BodyScene::place(int numbers)
   width = numbers;
   const size_t m = width;
   const auto row = [&](int i, double *out) {
+    const double resists[2] = {ambient.drag(i), ambient.spin(i)};
     double load[6];
     given.load(i, load);
     for (size_t d = 0; d < m; d++) {
       out[d] = load[d];
-      out[2 * m + d] = ambient.resistance(i, d);
+      out[2 * m + d] = resists[d >= 3];
     }
     if (given.velocities)
       ambient.slip(i, out + m);

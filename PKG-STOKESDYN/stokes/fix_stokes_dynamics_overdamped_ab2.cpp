@@ -22,9 +22,10 @@ void FixStokesDynamicsOverdamped::at_image(const Hydrodynamics &hydro, const dou
                                            const double *place, double *old) const
 {
   double shift[3], jump[3];
+  copy<6>(row, old);
+  if (!hydro.ambient.box_motion().deforms) return;    // all images have the same velocity
   for (int d = 0; d < 3; d++) shift[d] = place[d] - row[6 + d];
   sd_multiply3(hydro.ambient.box_motion().gradient, shift, jump);
-  copy<6>(row, old);
   for (int d = 0; d < 3; d++) old[d] += jump[d];
 }
 

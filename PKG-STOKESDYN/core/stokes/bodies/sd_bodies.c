@@ -5,6 +5,7 @@
 
 #include "sd_bodies_alone.h"
 #include "sd_cg.h"
+#include "sd_free_spheres.h"
 #include "sd_tie.h"
 
 /* What the loop goes by: what of r.z is rounding, and the power spent as it stands; what the bodies
@@ -445,6 +446,10 @@ static sd_status finish(loop *c, const sd_bodies_answer *answer)
 sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
                           const sd_bodies_answer *answer, double *work, sd_bodies_report *report)
 {
+  int only;
+  sd_status status = sd_free_spheres_only(A, &only);
+  if (status != SD_OK) return status;
+  if (only) return sd_free_spheres_solve(A, problem, answer, report);
   const long rows = sd_bodies_unknowns(A), bodies = 6 * (long) sd_bodies_count(A), size = rows + bodies;
   double *r = work + 3 * size, *by_bodies = r + 3 * rows, *on_spheres = by_bodies + 5 * bodies;
   loop c = {
@@ -464,8 +469,7 @@ sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
   *report = (sd_bodies_report){.curvature = 1.0};
   memset(work, 0, sizeof(double) * (size_t) (2 * size));
   if (problem->warm) memcpy(c.v.x, answer->l, sizeof(double) * (size_t) rows);
-  sd_status status = A->tie ? sd_tie_make(A) : SD_OK;
-  if (status != SD_OK) return status;
+  if (A->tie && (status = sd_tie_make(A)) != SD_OK) return status;
   take_loads(&c);
   status = problem->warm ? start_warm(&c, answer->v_with_l) : start_cold(&c);
   if (status == SD_OK) status = bodies_iterate(&c);
