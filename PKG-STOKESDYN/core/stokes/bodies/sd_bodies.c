@@ -130,12 +130,12 @@ static const double rounding = 1e-14;
  * Source: van den Eshof & Sleijpen, SIAM J. Matrix Anal. Appl. 26, 125 (2004). */
 typedef struct {
   double first, loosest;
-  /* that of a guess, whose error the loop takes up */
-  double guess;
+  /* that of a guess, and of a start from nothing: the loop takes up their errors */
+  double guess, start;
 } accuracy;
 /* Where stiff pairs chain bodies together across ranks, the norm of the sparse system hardly sees that these
  * move as one (sd_tie_factor.h), least of all in a guess: 0.3 left three times the products. */
-static const accuracy whole = {0.003, 0.2, 0.3}, severed = {0.002, 0.1, 0.01};
+static const accuracy whole = {0.003, 0.2, 0.3, 0.1}, severed = {0.002, 0.1, 0.01, 0.01};
 
 static const accuracy *accuracy_of(const loop *c)
 {
@@ -275,7 +275,7 @@ static sd_status start_cold(loop *c)
 {
   sd_status status = start_alone(c);
   if (status == SD_OK && c->A->tie) {
-    c->tie_tolerance = accuracy_of(c)->first;
+    c->tie_tolerance = accuracy_of(c)->start;
     hold(c, motion_of(c, c->v.x));
     status = pre(c, c->v.r, c->f, c->problem->velocities != NULL, c->v.x, motion_of(c, c->v.x));
   }
@@ -402,7 +402,7 @@ static void take_loads(loop *c)
  * is. Errors of answers live on in such a guess: e' = g (2 e - e_before) with g = 1 - part lambda, lambda an
  * eigenvalue of the preconditioned matrix. With part 0 they grow from step to step until a product of its own
  * takes them away. They fade for g between -1/3 and 1, so for lambda up to 4 / (3 part). Free bodies have
- * lambda up to about 4 (films, volume fraction 0.45); those that are held disturb each other from afar, and
+ * lambda up to about 4.5 (films, volume fraction 0.45); those that are held disturb each other from afar, and
  * lambda grows with their number.
  * Source: the predictor that is always stable of Kolafa, J. Comput. Chem. 25, 335 (2004). */
 static const double taken_up = 0.25;

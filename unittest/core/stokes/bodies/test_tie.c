@@ -206,7 +206,7 @@ static void products_do_not_depend_on_the_gap(void **state)
       settling_solve(s, 0, 1e-3);
       products[e] = s->report.products;
       assert_true(products[e] <= 20);
-      assert_true(s->tie.products <= 4 * products[e]);
+      assert_true(s->tie.products <= 3 * products[e]);
       assert_true(settling_error(s, reference) < 1e-4);
       free(reference);
       settling_free(s);
