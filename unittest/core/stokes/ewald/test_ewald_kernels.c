@@ -2,6 +2,8 @@
 #include "periodic.h"
 
 #include "sd_ewald_pairs.h"
+#include "sd_grid_internal.h"
+#include "sd_real.h"
 
 enum { N = 120, SIDE = 40, ROW = 3 * SIDE + 16 };
 
@@ -238,6 +240,54 @@ static void rows_of_waves_agree(void **state)
     }
 }
 
+/* The sum over the points of a line, which may be complex, from its definition */
+static void transform(int n, const double *re, const double *im, int k, double *wave)
+{
+  wave[0] = wave[1] = 0.0;
+  for (int j = 0; j < n; j++) {
+    const double angle = -2.0 * SD_PI * ((long) j * k % n) / n, c = cos(angle), s = sin(angle);
+    wave[0] += c * re[j] - (im ? s * im[j] : 0.0);
+    wave[1] += s * re[j] + (im ? c * im[j] : 0.0);
+  }
+}
+
+/* The first waves of two real lines are parted from those of one complex line, and joined to it, whose others are 0. */
+static void two_real_lines_are_a_complex_one(void **state)
+{
+  (void) state;
+  enum { MOST = 64 };
+  static const int points[] = {2, 3, 8, 9, 31, 40, MOST};
+  for (int p = 0; p < 7; p++)
+    for (int cut = 0; cut < 3; cut++)
+      for (int k = -1; k < 3; k++)
+        for (int single = 0; single < 2; single++) {
+          const int n = points[p], waves = n / 2 + 1 - cut * n / 8;
+          const size_t bytes = single ? sizeof(float) : sizeof(double);
+          const sd_isa isa = k < 0 ? SD_ISA_PLAIN : sets[k];
+          if (!sd_isa_supported(isa)) continue;
+          const struct sd_grid_kernels *kernels =
+              single ? SD_KERNELS_OF(sd_grid_single, plain, isa) : SD_KERNELS_OF(sd_grid, plain, isa);
+          uint64_t seed = 4;
+          double line[2][MOST], wave[2], both[2 * MOST], again[2 * MOST], part[2][2 * MOST];
+          for (int j = 0; j < n; j++) line[0][j] = uniform(&seed, -1, 1), line[1][j] = uniform(&seed, -1, 1);
+          for (int j = 0; j < n; j++) {
+            transform(n, line[0], line[1], j, wave);
+            for (int c = 0; c < 2; c++) sd_put_number(both, bytes, 2 * j + c, wave[c]), sd_put_number(again, bytes, 2 * j + c, 9.0);
+          }
+          kernels->part(both, n, waves, part[0], part[1]);
+          for (int l = 0; l < 2; l++)
+            for (int j = 0; j < waves; j++) {
+              transform(n, line[l], NULL, j, wave);
+              for (int c = 0; c < 2; c++) CHECK_NEAR(sd_number(part[l], bytes, 2 * j + c), wave[c], single ? 2e-5 : 1e-12);
+            }
+          kernels->join(part[0], part[1], n, waves, again);
+          for (int j = 0; j < n; j++)
+            for (int c = 0; c < 2; c++)
+              CHECK_NEAR(sd_number(again, bytes, 2 * j + c),
+                         j < waves || j > n - waves ? sd_number(both, bytes, 2 * j + c) : 0.0, single ? 2e-5 : 1e-12);
+        }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -247,6 +297,7 @@ int main(void)
       cmocka_unit_test(near_parts_of_floats_are_those_of_doubles),
       cmocka_unit_test(windows_of_floats_are_those_of_doubles),
       cmocka_unit_test(rows_of_waves_agree),
+      cmocka_unit_test(two_real_lines_are_a_complex_one),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,15 +22,13 @@ static void eight(double *x, double *a, double *w)
 
 /* All values 0 but one component at one point */
 typedef struct {
-  int x, y, z, component;
+  int x, y, z, component, points;
 } one_point;
 
-static void fill_one(void *ctx, int x, int y, int y_end, long stride, double *const *fields)
+static void fill_one(void *ctx, int x, int y, int y_end, double *const *fields)
 {
   const one_point *p = ctx;
-  for (int c = 0; c < 3; c++)
-    for (int k = y; k < y_end; k++)
-      for (int z = 0; z < stride; z++) fields[c][(k - y) * stride + z] = c == p->component && x == p->x && k == p->y && z == p->z;
+  if (x == p->x && p->y >= y && p->y < y_end) fields[p->component][sd_grid_number(p->points, p->y - y, p->z)] = 1.0;
 }
 
 /* M [m N][m N] of the whole sum, or of what is not drawn */
@@ -78,7 +76,7 @@ static void waves_have_exactly_the_covariance_of_their_product(void **state)
     assert_int_equal(sd_ewald_waves_place(&waves, bricks), SD_OK);
     double u[6 * N];
     waves.spreading.F = u;
-    one_point at;
+    one_point at = {.points = how.grid[2]};
     for (at.x = 0; at.x < how.grid[0]; at.x++)
       for (at.y = 0; at.y < how.grid[1]; at.y++)
         for (at.z = 0; at.z < how.grid[2]; at.z++)

@@ -11,13 +11,19 @@
 
 /* --- memory --- */
 
-/* Complex numbers of a plane at work */
+int sd_grid_pairs(const sd_grid *g)
+{
+  return (sd_grid_own(g, SD_SHARED_LINES) + 1) / 2;
+}
+
+/* Complex numbers of a plane at work: points, their waves along z, and those of a turn */
 static size_t plane_numbers(const sd_grid *g)
 {
-  const size_t lines = (size_t) sd_grid_own(g, SD_SHARED_LINES) * (size_t) g->half;
+  const size_t pairs = (size_t) sd_grid_pairs(g), points = pairs * (size_t) g->size[2];
   const int longer = g->size[0] > g->size[1] ? g->size[0] : g->size[1];
-  const size_t waves = (size_t) longer * (size_t) sd_grid_own(g, SD_SHARED_Z);
-  return (lines > waves ? lines : waves) + 1;
+  const size_t waves = 2 * pairs * (size_t) g->waves, turned = (size_t) longer * (size_t) sd_grid_own(g, SD_SHARED_Z);
+  const size_t most = points > waves ? points : waves;
+  return (most > turned ? most : turned) + 1;
 }
 
 static void *make_plane(const sd_grid *g)
@@ -39,12 +45,15 @@ static int gr_allocate(sd_grid *g)
   return ok && g->slab && g->beside && g->counts;
 }
 
-sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, size_t bytes,
+sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, int waves, size_t bytes,
                          const sd_world *world)
 {
   sd_grid_free(g);
   g->bytes = bytes;
   g->fields = bytes == sizeof(float) ? &sd_grid_floats : &sd_grid_doubles;
+  const sd_isa isa = sd_isa_of(SD_ISA_BEST);
+  g->kernels =
+      bytes == sizeof(float) ? SD_KERNELS_OF(sd_grid_single, plain, isa) : SD_KERNELS_OF(sd_grid, plain, isa);
   g->world = *world;
   g->ranks = world->exchange ? sd_world_ranks(world) : 1;
   g->me = g->ranks > 1 ? world->me : 0;
@@ -52,7 +61,7 @@ sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, size_
     g->size[d] = size[d];
     g->occupied[d] = occupied[d];
   }
-  g->half = size[2] / 2 + 1;
+  g->waves = waves;
   g->columns = sd_grid_columns(g, 0);
   g->rows = g->ranks / g->columns;
   for (int k = 0; k < 4; k++) sd_grid_range_of(g, k, g->me, g->own[k]);

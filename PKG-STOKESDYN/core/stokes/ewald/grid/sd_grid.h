@@ -50,8 +50,9 @@ typedef struct {
   /* of a number; pointers to void are to numbers, or to pairs of them, which are complex */
   size_t bytes;
   const struct sd_grid_fields *fields;
-  /* points of the transform, of its occupied part, and complex numbers along z */
-  int size[3], occupied[3], half;
+  const struct sd_grid_kernels *kernels;
+  /* points of the transform, of its occupied part, and wave numbers along z that are not 0 */
+  int size[3], occupied[3], waves;
   int rows, columns;
   /* this rank's part of each sd_grid_part: first and end */
   int own[4][2];
@@ -94,9 +95,10 @@ typedef struct {
  * these the product with the height is added to what comes of the first three. */
 typedef void sd_grid_multiply(void *ctx, int y, void *const *plane);
 
-/* Rows, columns and plans; bytes: of a double, or of a float. SD_OK; SD_ENOMEMORY, also for turns of more
+/* Rows, columns and plans; waves: the wave numbers 0 ... along z that a multiplication leaves something of, at most
+ * half of size[2] and one more; bytes: of a double, or of a float. SD_OK; SD_ENOMEMORY, also for turns of more
  * numbers than an int counts. */
-sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, size_t bytes,
+sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, int waves, size_t bytes,
                          const sd_world *world);
 
 /* From now on with heights, one for each plane of x [occupied x]. SD_OK or SD_ENOMEMORY. */
@@ -120,9 +122,15 @@ size_t sd_grid_brick_numbers(const sd_grid *g);
  * exchange said. */
 sd_status sd_grid_convolve(sd_grid *g, sd_grid_multiply *multiply, void *ctx);
 
-/* Values at the points of plane x and of its lines y ... y_end - 1: fields [3], line y of each begins
- * at its first number, the next `stride` further. */
-typedef void sd_grid_fill(void *ctx, int x, int y, int y_end, long stride, double *const *fields);
+/* The number of point z of a line in a plane of points: two lines are a row of complex numbers, [points] */
+static inline long sd_grid_number(int points, int line, int z)
+{
+  return 2 * ((long) (line / 2) * points + z) + line % 2;
+}
+
+/* Values at the points of plane x and of its lines y ... y_end - 1: fields [3], which hold zeros and whose line 0 is
+ * line y. */
+typedef void sd_grid_fill(void *ctx, int x, int y, int y_end, double *const *fields);
 
 /* The same from values that are known on the grid, in place of what bricks hold; brick out. Of doubles
  * alone */

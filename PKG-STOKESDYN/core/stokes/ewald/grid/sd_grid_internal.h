@@ -7,6 +7,7 @@
 #include <stddef.h>
 
 #include "sd_grid.h"
+#include "sd_isa.h"
 
 /* --- who has what --- */
 
@@ -32,8 +33,21 @@ size_t sd_grid_largest_message(const sd_grid *g);
 
 /* --- numbers --- */
 
+/* Of our lines of a plane of points, two are one row of complex numbers: their real and imaginary parts. */
+int sd_grid_pairs(const sd_grid *g);
+
 /* Complex numbers of a field of the slab */
 long sd_grid_slab_field(const sd_grid *g);
+
+/* Loops in vectors: between the transform of a complex line of n points and the first `waves` of those of its real and of
+ * its imaginary part. Of what the parts are made from the other waves are 0. */
+struct sd_grid_kernels {
+  void (*part)(const void *both, int n, int waves, void *a, void *b);
+  void (*join)(const void *a, const void *b, int n, int waves, void *both);
+};
+
+SD_KERNEL_TABLES(struct sd_grid_kernels, sd_grid);
+SD_KERNEL_TABLES(struct sd_grid_kernels, sd_grid_single);
 
 /* Numbers of one precision */
 struct sd_grid_fields {

@@ -14,23 +14,29 @@ static double most_of(int all, int parts)
   return (all + parts - 1) / parts;
 }
 
+/* Wave numbers along a direction, if it were the last */
+static int waves_along(const sd_grid *g, int d)
+{
+  return d == 2 ? g->waves : g->size[d] / 2 + 1;
+}
+
 /* Of ranks in so many columns, the most numbers that one of them transforms along z, y and x, if the
  * first direction is d */
 static double gs_load(const sd_grid *g, int d, int columns)
 {
-  const int e = (d + 1) % 3, half = g->size[(d + 2) % 3] / 2 + 1, rows = g->ranks / columns;
-  const double planes = most_of(g->occupied[d], rows), depth = most_of(half, columns);
-  return planes * most_of(g->occupied[e], columns) * half + planes * g->size[e] * depth +
+  const int e = (d + 1) % 3, waves = waves_along(g, (d + 2) % 3), rows = g->ranks / columns;
+  const double planes = most_of(g->occupied[d], rows), depth = most_of(waves, columns);
+  return planes * most_of(g->occupied[e], columns) * waves + planes * g->size[e] * depth +
       g->size[d] * most_of(g->size[e], rows) * depth;
 }
 
 /* As many columns as make the load least; the turn that more than one need is a quarter of it. */
 int sd_grid_columns(const sd_grid *g, int d)
 {
-  const int most = g->occupied[(d + 1) % 3], half = g->size[(d + 2) % 3] / 2 + 1;
+  const int most = g->occupied[(d + 1) % 3], waves = waves_along(g, (d + 2) % 3);
   int best = 1;
   double least = gs_load(g, d, 1);
-  for (int c = 2; c <= g->ranks && c <= most && c <= half; c++)
+  for (int c = 2; c <= g->ranks && c <= most && c <= waves; c++)
     if (1.25 * gs_load(g, d, c) < least) {
       least = 1.25 * gs_load(g, d, c);
       best = c;
@@ -51,7 +57,7 @@ void sd_grid_range(int all, sd_grid_part what, int rank, int rows, int columns, 
 
 void sd_grid_range_of(const sd_grid *g, sd_grid_part what, int rank, int *range)
 {
-  const int all[] = {g->occupied[0], g->occupied[1], g->size[1], g->half};
+  const int all[] = {g->occupied[0], g->occupied[1], g->size[1], g->waves};
   sd_grid_range(all[what], what, rank, g->rows, g->columns, range);
 }
 

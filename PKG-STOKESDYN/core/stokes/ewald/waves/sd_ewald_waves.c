@@ -67,6 +67,19 @@ static sd_status raise_grid(sd_ewald_waves *w)
   return status;
 }
 
+/* Wave numbers m along the last direction of the frame that the sum has, in whole vectors of FFTW: |k| is at least 2 pi m
+ * over the edge, and ends at the band; half as many waves as points have no partner. */
+static int waves_along_z(const sd_ewald *e, int points)
+{
+  enum { VECTOR = 4 };
+  const int half = points / 2 + 1;
+  if (!e->box.periodic || e->slab.planes > 0) return half;
+  double waves = (points + 1) / 2;
+  if (e->band > 0.0) waves = fmin(waves, 1.0 + floor(e->band * sd_ewald_edge_length(&e->box, 2) / (2.0 * SD_PI)));
+  const int whole = ((int) waves + VECTOR - 1) / VECTOR * VECTOR;
+  return whole < half ? whole : half;
+}
+
 /* Grid and waves of the frame */
 static sd_status make_grid(sd_ewald_waves *w, const sd_world *world)
 {
@@ -75,7 +88,8 @@ static sd_status make_grid(sd_ewald_waves *w, const sd_world *world)
   int size[3];
   const int occupied[3] = {e->slab.planes > 0 ? e->slab.planes : e->grid[0], e->grid[1], e->grid[2]};
   for (int d = 0; d < 3; d++) size[d] = (e->box.periodic ? 1 : 2) * e->grid[d];
-  sd_status status = sd_grid_create(&w->grid, size, occupied, w->kernels->bytes, world);
+  sd_status status =
+      sd_grid_create(&w->grid, size, occupied, waves_along_z(e, size[2]), w->kernels->bytes, world);
   if (status == SD_OK)
     status = sd_wave_create(&w->wave, e, w->kernels, size, w->grid.own[SD_SHARED_Y],
                             w->grid.own[SD_SHARED_Z]);
@@ -339,7 +353,7 @@ typedef struct {
 } white;
 
 /* Direction d of the frame is d + turn of the box, and so is component d. */
-static void fill_white(void *ctx, int x, int y, int y_end, long stride, double *const *fields)
+static void fill_white(void *ctx, int x, int y, int y_end, double *const *fields)
 {
   const white *from = ctx;
   const sd_ewald_waves *w = from->waves;
@@ -354,7 +368,7 @@ static void fill_white(void *ctx, int x, int y, int y_end, long stride, double *
               (uint64_t) size[2] + (uint64_t) at[2];
       double normals[3];
       sd_random_normals(&from->key, point, 3, normals);
-      for (int d = 0; d < 3; d++) fields[d][(k - y) * stride + z] = normals[(d + w->turn) % 3];
+      for (int d = 0; d < 3; d++) fields[d][sd_grid_number(w->ewald.grid[2], k - y, z)] = normals[(d + w->turn) % 3];
     }
   }
 }
