@@ -102,6 +102,13 @@ static void split(sd_ewald *e, const splitting *by, double *near)
   e->spacing = sd_splitting_spacing(e, by, *near, y);
 }
 
+/* Points of the transform of a periodic direction, a multiple of 4 as open ones are: FFTW takes 1.2 to 2 times as long for
+ * 42, 50, 54, 70, 90, 98 and 150 points, each, as for those of the next such number. */
+static int points_of_period(double cells)
+{
+  return 2 * sd_ewald_transformable(0.5 * cells);
+}
+
 sd_status sd_ewald_lay_grid(const sd_ewald_box *box, double h, int points, double *spacing, int *grid)
 {
   double all = 1.0;
@@ -110,7 +117,7 @@ sd_status sd_ewald_lay_grid(const sd_ewald_box *box, double h, int points, doubl
     const double cells = sd_ewald_edge_length(box, d) / h;
     if (!(cells < 1e6)) return SD_ENOMEMORY;
     if (box->periodic)
-      grid[d] = sd_ewald_transformable(fmax(cells, points + 2));
+      grid[d] = points_of_period(fmax(cells, points + 2));
     else
       grid[d] = sd_ewald_transformable(ceil(cells) + points + 1);
     all *= grid[d];
@@ -283,7 +290,7 @@ static sd_status lay_planes(sd_ewald *e, int across, double span)
     if (d != across) h = fmax(h, sd_ewald_edge_length(&e->box, d) / e->grid[d]);
   const double cells = (span + fmax(e->range, (e->points + 2) * h)) / h;
   if (!(cells < 1e6)) return SD_ENOMEMORY;
-  e->grid[across] = sd_ewald_transformable(cells);
+  e->grid[across] = points_of_period(cells);
   e->box.edge[across] = h * e->grid[across];
   e->spacing = h;
   e->slab = (sd_ewald_slab){across, (int) ceil(span / h + e->points) + 2};

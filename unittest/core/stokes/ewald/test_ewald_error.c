@@ -2,6 +2,8 @@
 #include "periodic.h"
 #include "predicted.h"
 
+#include "sd_ewald_rule_internal.h"
+
 enum { N = 240, SCENES = 40 };
 
 typedef struct {
@@ -114,12 +116,17 @@ static void waves_that_end_at_a_band_need_half_the_grid(void **state)
   }
 }
 
-/* FFTW is slow with lines of 126 and of 162 points. */
+/* FFTW is slow with lines of 126 and of 162 points, and of 90 in a periodic box. */
 static void grids_are_fast_to_transform(void **state)
 {
   (void) state;
   const int asked[] = {90, 125, 126, 161, 250, 377}, got[] = {90, 128, 128, 168, 250, 384};
   for (int k = 0; k < 6; k++) assert_int_equal(sd_ewald_transformable(asked[k]), got[k]);
+  const sd_ewald_box box = {.periodic = 1, .edge = {90, 53.5, 98}};
+  double spacing;
+  int grid[3];
+  assert_int_equal(sd_ewald_lay_grid(&box, 1.0, 5, &spacing, grid), SD_OK);
+  assert_true(grid[0] == 96 && grid[1] == 56 && grid[2] == 100);
 }
 
 /* Equal spheres with torques, thin and dense: velocities are right to the tolerance over F/(6 pi a), spins over T/(8 pi a^3), and
