@@ -102,8 +102,8 @@ static void split(sd_ewald *e, const splitting *by, double *near)
   e->spacing = sd_splitting_spacing(e, by, *near, y);
 }
 
-/* Points of the transform of a periodic direction, a multiple of 4 as open ones are: FFTW takes 1.2 to 2 times as long for
- * 42, 50, 54, 70, 90, 98 and 150 points, each, as for those of the next such number. */
+/* Points of the transform of a periodic direction, a multiple of 4 as open ones are: for 42, 50, 54, 70, 90, 98 and
+ * 150 points FFTW takes 1.2 to 2 times as long, a point, as for the next such number. */
 static int points_of_period(double cells)
 {
   return 2 * sd_ewald_transformable(0.5 * cells);

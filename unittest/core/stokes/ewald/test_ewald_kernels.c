@@ -272,13 +272,17 @@ static void two_real_lines_are_a_complex_one(void **state)
           for (int j = 0; j < n; j++) line[0][j] = uniform(&seed, -1, 1), line[1][j] = uniform(&seed, -1, 1);
           for (int j = 0; j < n; j++) {
             transform(n, line[0], line[1], j, wave);
-            for (int c = 0; c < 2; c++) sd_put_number(both, bytes, 2 * j + c, wave[c]), sd_put_number(again, bytes, 2 * j + c, 9.0);
+            for (int c = 0; c < 2; c++) {
+              sd_put_number(both, bytes, 2 * j + c, wave[c]);
+              sd_put_number(again, bytes, 2 * j + c, 9.0);
+            }
           }
           kernels->part(both, n, waves, part[0], part[1]);
           for (int l = 0; l < 2; l++)
             for (int j = 0; j < waves; j++) {
               transform(n, line[l], NULL, j, wave);
-              for (int c = 0; c < 2; c++) CHECK_NEAR(sd_number(part[l], bytes, 2 * j + c), wave[c], single ? 2e-5 : 1e-12);
+              for (int c = 0; c < 2; c++)
+                CHECK_NEAR(sd_number(part[l], bytes, 2 * j + c), wave[c], single ? 2e-5 : 1e-12);
             }
           kernels->join(part[0], part[1], n, waves, again);
           for (int j = 0; j < n; j++)

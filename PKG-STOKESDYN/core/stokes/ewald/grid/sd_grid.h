@@ -95,9 +95,9 @@ typedef struct {
  * these the product with the height is added to what comes of the first three. */
 typedef void sd_grid_multiply(void *ctx, int y, void *const *plane);
 
-/* Rows, columns and plans; waves: the wave numbers 0 ... along z that a multiplication leaves something of, at most
- * half of size[2] and one more; bytes: of a double, or of a float. SD_OK; SD_ENOMEMORY, also for turns of more
- * numbers than an int counts. */
+/* Rows, columns and plans; waves: so many wave numbers 0 ... along z are left by a multiplication, at most
+ * half of size[2] and one more; bytes: of a double, or of a float. SD_OK; SD_ENOMEMORY, also for turns of
+ * more numbers than an int counts. */
 sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, int waves, size_t bytes,
                          const sd_world *world);
 
@@ -128,8 +128,8 @@ static inline long sd_grid_number(int points, int line, int z)
   return 2 * ((long) (line / 2) * points + z) + line % 2;
 }
 
-/* Values at the points of plane x and of its lines y ... y_end - 1: fields [3], which hold zeros and whose line 0 is
- * line y. */
+/* Values at the points of plane x and of its lines y ... y_end - 1: fields [3], which hold zeros and whose
+ * line 0 is line y. */
 typedef void sd_grid_fill(void *ctx, int x, int y, int y_end, double *const *fields);
 
 /* The same from values that are known on the grid, in place of what bricks hold; brick out. Of doubles

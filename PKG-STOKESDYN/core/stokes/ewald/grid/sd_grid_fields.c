@@ -15,8 +15,8 @@ typedef FFT(complex) waves;
 
 /* --- plans --- */
 
-/* Our lines of an x plane along z, two as one; all lines at our z along y to the slab; all x at our z along x. Complex
- * lines in pairs of real ones take half the time that FFTW has for the real ones. From one place to another, which FFTW does faster than in one place.
+/* Our lines of an x plane along z, two as one; all lines at our z along y to the slab; all x at our z along x. FFTW
+ * takes half as long for complex lines as for the real ones in them, and less from one place to another than in one.
  * FFTW_ESTIMATE: measured plans differ from run to run, and so do their last bits. */
 static int plan(sd_grid *g)
 {

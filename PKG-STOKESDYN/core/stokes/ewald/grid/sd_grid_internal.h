@@ -39,8 +39,8 @@ int sd_grid_pairs(const sd_grid *g);
 /* Complex numbers of a field of the slab */
 long sd_grid_slab_field(const sd_grid *g);
 
-/* Loops in vectors: between the transform of a complex line of n points and the first `waves` of those of its real and of
- * its imaginary part. Of what the parts are made from the other waves are 0. */
+/* Loops in vectors: between the transform of a complex line of n points and the first `waves` of those of its
+ * real and of its imaginary part, a and b; join takes the others for 0. */
 struct sd_grid_kernels {
   void (*part)(const void *both, int n, int waves, void *a, void *b);
   void (*join)(const void *a, const void *b, int n, int waves, void *both);

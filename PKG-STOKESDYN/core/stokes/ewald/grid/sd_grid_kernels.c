@@ -1,7 +1,7 @@
 /* Kernels of the grid, of doubles; sd_grid_single_kernels.c: the same of floats.
  *
- * Two real lines a and b of n points are the parts of one complex line, Z = A + i B. Of real lines conj A(n - k) is A(k),
- * and so
+ * Two real lines a and b of n points are the parts of one complex line, Z = A + i B. Of real lines
+ * conj A(n - k) is A(k), and so
  *
  *   A(k) = (Z(k) + conj Z(n - k))/2,   B(k) = (Z(k) - conj Z(n - k))/2i,   conj Z(n - k) = A(k) - i B(k) */
 #include "sd_grid_internal.h"

@@ -3,18 +3,22 @@
 /* A row along z is taken in chunks of so many vectors at most, which stay in registers. */
 #define MOST_VECTORS (LANES == LANES_OF(64) ? 6 : 4)
 
+/* Numbers of a column and of a row up to whole vectors of any set, since vectors that begin anywhere take
+ * twice as long to read */
+#define WHOLE(numbers) (((numbers) + 15) / 16 * 16)
 enum {
-  MOST_POINTS = SD_WINDOW_COLUMNS,
-  MOST_ROW = (3 * MOST_POINTS + MOST_VECTORS * LANES + 7) / 8 * 8
+  MOST_COLUMN = WHOLE(SD_WINDOW_COLUMNS + LANES),
+  MOST_ROW = WHOLE(3 * SD_WINDOW_COLUMNS + MOST_VECTORS * LANES)
 };
 
 /* A spreading in real numbers; points of the window up to whole vectors */
 typedef struct {
   int n, width, points, degree, lo[3];
   const sd_spread_place *place;
-  real *F, *brick, metric[6], gradient[3][3], coefficient[SD_WINDOW_TERMS][MOST_POINTS + LANES];
+  real *F, *brick, metric[6], gradient[3][3];
+  real coefficient[SD_WINDOW_TERMS][MOST_COLUMN] ALIGNED(64);
   /* along a row of the grid, where each point has three numbers: the same thrice, and which is whose */
-  real thrice[SD_WINDOW_TERMS][MOST_ROW], of[3][MOST_ROW];
+  real thrice[SD_WINDOW_TERMS][MOST_ROW] ALIGNED(64), of[3][MOST_ROW] ALIGNED(64);
   long row, layer;
 } spreading;
 
@@ -40,27 +44,42 @@ static void in_reals(const sd_spreading *from, spreading *s)
   for (int k = 0; k < 3 * w->points; k++) s->of[k % 3][k] = 1;
 }
 
-/* phi, and with derivatives phi' and phi'', at LANES columns of the coefficients [][stride] from here on;
- * derivatives with respect to the grid's coordinate: d/ds = -2 d/dv. */
-INLINE void window_at(const real *coefficient, int stride, int degree, int derivatives, vec v, vec *value)
+/* phi, and with derivatives phi' and phi'', at LANES columns of the coefficients [][stride] from here on; for
+ * many, at most 3, values of v, whose polynomials are found side by side. Derivatives with respect to the
+ * grid's coordinate: d/ds = -2 d/dv. */
+INLINE void window_at(const real *coefficient, int stride, int degree, int derivatives, int many,
+                      const vec *v, vec value[][3])
 {
-  vec f = load_any(coefficient + degree * stride), f1 = all(0.0), f2 = f1;
-  for (int m = degree - 1; m >= 0; m--) {
-    if (derivatives) {
-      f2 = f2 * v + f1;
-      f1 = f1 * v + f;
-    }
-    f = f * v + load_any(coefficient + m * stride);
+  vec f[3], f1[3], f2[3];
+#pragma GCC unroll 3
+  for (int d = 0; d < many; d++) {
+    f[d] = load(coefficient + degree * stride);
+    f1[d] = f2[d] = all(0.0);
   }
-  value[0] = f;
-  value[1] = all(-2.0) * f1;
-  value[2] = all(8.0) * f2; /* f2 is half the second derivative */
+#pragma GCC unroll 8
+  for (int m = degree - 1; m >= 0; m--) {
+    const vec next = load(coefficient + m * stride);
+#pragma GCC unroll 3
+    for (int d = 0; d < many; d++) {
+      if (derivatives) {
+        f2[d] = f2[d] * v[d] + f1[d];
+        f1[d] = f1[d] * v[d] + f[d];
+      }
+      f[d] = f[d] * v[d] + next;
+    }
+  }
+#pragma GCC unroll 3
+  for (int d = 0; d < many; d++) {
+    value[d][0] = f[d];
+    value[d][1] = all(-2.0) * f1[d];
+    value[d][2] = all(8.0) * f2[d]; /* f2 is half the second derivative */
+  }
 }
 
 /* Windows of a sphere in x, y, z with derivatives */
 typedef struct {
-  real value[3][MOST_POINTS + LANES], first[3][MOST_POINTS + LANES],
-      second[3][MOST_POINTS + LANES];
+  real value[3][MOST_COLUMN] ALIGNED(64), first[3][MOST_COLUMN] ALIGNED(64);
+  real second[3][MOST_COLUMN] ALIGNED(64);
 } windows;
 
 /* Of the terms of sd_spreading: is the one of unlike radii among them, and those of torques? */
@@ -76,14 +95,16 @@ INLINE int turning(int terms)
 
 INLINE void windows_at(int directions, int terms, const spreading *s, const sd_spread_place *at, windows *w)
 {
-  for (int d = 0; d < directions; d++)
-    for (int k = 0; k < s->points; k += LANES) {
-      vec f[3];
-      window_at(s->coefficient[0] + k, MOST_POINTS + LANES, s->degree, terms > 1, all((real) at->v[d]), f);
-      store_any(w->value[d] + k, f[0]);
-      if (turning(terms)) store_any(w->first[d] + k, f[1]);
-      if (unlike(terms)) store_any(w->second[d] + k, f[2]);
+  vec v[3], f[3][3];
+  for (int d = 0; d < directions; d++) v[d] = all((real) at->v[d]);
+  for (int k = 0; k < s->points; k += LANES) {
+    window_at(s->coefficient[0] + k, MOST_COLUMN, s->degree, terms > 1, directions, v, f);
+    for (int d = 0; d < directions; d++) {
+      store(w->value[d] + k, f[d][0]);
+      if (turning(terms)) store(w->first[d] + k, f[d][1]);
+      if (unlike(terms)) store(w->second[d] + k, f[d][2]);
     }
+  }
 }
 
 /* sum_t m_t V_t = A_0 phi_y + A_1 phi_y' + A_2 phi_y'': the factors of these at point p of x */
@@ -133,8 +154,8 @@ INLINE void strengths(int terms, const spreading *s, const real *F, real to[4][3
 /* LANES numbers of a row [points][3] that has `from` at each point, from `skip` on */
 INLINE vec repeated(const spreading *s, int skip, const real *from)
 {
-  vec row = all(from[0]) * load_any(s->of[0] + skip);
-  for (int c = 1; c < 3; c++) row += all(from[c]) * load_any(s->of[c] + skip);
+  vec row = all(from[0]) * load(s->of[0] + skip);
+  for (int c = 1; c < 3; c++) row += all(from[c]) * load(s->of[c] + skip);
   return row;
 }
 
@@ -143,9 +164,10 @@ INLINE void row_of_force(int terms, const spreading *s, int skip, const sd_sprea
                          vec V[4])
 {
   const real *g = s->metric;
-  const vec b = all((real) at->b), F = repeated(s, skip, from[0]);
-  vec z[3];
-  window_at(s->thrice[0] + skip, MOST_ROW, s->degree, terms > 1, all((real) at->v[2]), z);
+  const vec b = all((real) at->b), v = all((real) at->v[2]), F = repeated(s, skip, from[0]);
+  vec found[1][3];
+  window_at(s->thrice[0] + skip, MOST_ROW, s->degree, terms > 1, 1, &v, found);
+  const vec *z = found[0];
   V[0] = F * (unlike(terms) ? z[0] + b * all(g[2]) * z[2] : z[0]);
   if (unlike(terms)) V[1] = b * F * z[0];
   if (!turning(terms)) return;
@@ -177,6 +199,7 @@ INLINE void spread_chunk(int terms, int vectors, const spreading *s, const windo
     vec A[MOST_VECTORS][3];
 #pragma GCC unroll 6
     for (int l = 0; l < vectors; l++) factors_of_y(terms, s, w, p, v[l], A[l]);
+#pragma GCC unroll 4
     for (int q = 0; q < points; q++) {
       real *row = corner + p * s->layer + q * s->row;
 #pragma GCC unroll 6
@@ -202,24 +225,25 @@ INLINE void spread_with(int terms, int vectors, int chunks, const spreading *s)
   }
 }
 
-/* The transpose of row_of_force: U and W from S_t = sum_pq m_t row. */
+/* The transpose of row_of_force: U and W from S_t = sum_pq m_t row. Four numbers of a row are taken for
+ * three, since four are a vector. */
 INLINE void force_of_rows(int terms, const spreading *s, const windows *w, real b,
                           real S[4][MOST_ROW], real *U)
 {
   const real *z = w->value[2], *z1 = w->first[2], *z2 = w->second[2], *g = s->metric;
-  real slope[3][3] = {{0}}; /* sum over the grid of dw/dx_d u */
-  for (int c = 0; c < 3; c++) U[c] = 0.0;
+  real sum[4] = {0}, slope[3][4] = {{0}}; /* sum over the grid of w u, and of dw/dx_d u */
   for (int k = 0; k < s->points; k++)
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < 4; c++) {
       const int at = 3 * k + c;
-      U[c] += S[0][at] * z[k];
-      if (unlike(terms)) U[c] += b * (g[2] * S[0][at] * z2[k] + S[1][at] * z[k]);
+      sum[c] += S[0][at] * z[k];
+      if (unlike(terms)) sum[c] += b * (g[2] * S[0][at] * z2[k] + S[1][at] * z[k]);
       if (!turning(terms)) continue;
-      if (unlike(terms)) U[c] += 2 * b * z1[k] * (g[4] * S[2][at] + g[5] * S[3][at]);
+      if (unlike(terms)) sum[c] += 2 * b * z1[k] * (g[4] * S[2][at] + g[5] * S[3][at]);
       slope[0][c] += S[2][at] * z[k];
       slope[1][c] += S[3][at] * z[k];
       slope[2][c] += S[0][at] * z1[k];
     }
+  for (int c = 0; c < 3; c++) U[c] = sum[c];
   if (s->width < 6) return;
   const real half = (real) 0.5;
   real *W = U + 3;
@@ -244,6 +268,7 @@ INLINE void gather_chunk(int terms, int vectors, const spreading *s, const windo
     vec A[MOST_VECTORS][3];
 #pragma GCC unroll 6
     for (int l = 0; l < vectors; l++) A[l][0] = A[l][1] = A[l][2] = all(0.0);
+#pragma GCC unroll 4
     for (int q = 0; q < points; q++) {
       const real *row = corner + p * s->layer + q * s->row;
 #pragma GCC unroll 6
@@ -260,12 +285,12 @@ INLINE void gather_chunk(int terms, int vectors, const spreading *s, const windo
 #pragma GCC unroll 6
   for (int l = 0; l < vectors; l++)
 #pragma GCC unroll 4
-    for (int t = 0; t < 4; t++) store_any(S + t * MOST_ROW + LANES * l, v[l][t]);
+    for (int t = 0; t < 4; t++) store(S + t * MOST_ROW + LANES * l, v[l][t]);
 }
 
 INLINE void interpolate_with(int terms, int vectors, int chunks, const spreading *s)
 {
-  real S[4][MOST_ROW];
+  real S[4][MOST_ROW] ALIGNED(64) = {{0}};
   windows w;
   for (int i = 0; i < s->n; i++) {
     const sd_spread_place *at = s->place + i;

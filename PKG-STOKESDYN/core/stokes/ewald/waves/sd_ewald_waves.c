@@ -67,8 +67,8 @@ static sd_status raise_grid(sd_ewald_waves *w)
   return status;
 }
 
-/* Wave numbers m along the last direction of the frame that the sum has, in whole vectors of FFTW: |k| is at least 2 pi m
- * over the edge, and ends at the band; half as many waves as points have no partner. */
+/* Wave numbers m along the last direction of the frame that the sum has, in whole vectors of FFTW: |k| is at least
+ * 2 pi m over the edge, and ends at the band; the wave of half as many as points has no partner. */
 static int waves_along_z(const sd_ewald *e, int points)
 {
   enum { VECTOR = 4 };

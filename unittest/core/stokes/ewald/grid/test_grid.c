@@ -121,7 +121,8 @@ static void add_to(const sd_grid *g, int i, int j, int k, int c, double f)
   sd_put_number(g->brick, g->bytes, at, sd_number(g->brick, g->bytes, at) + f);
 }
 
-/* Sums of all bricks on `ranks`, of which one knows nothing of waves that are not left, and all through the grid: velocities of rank 0, whose brick is the whole box, by point */
+/* Sums of all bricks on `ranks`, of which one knows nothing of waves that are not left, and all through the grid:
+ * velocities of rank 0, whose brick is the whole box, by point */
 static void run(const layout *l, size_t bytes, int ranks, const int *bricks, int of, double *whole, double largest)
 {
   const double bound = bytes == sizeof(float) ? 1e-6 : 1e-12;
@@ -134,7 +135,8 @@ static void run(const layout *l, size_t bytes, int ranks, const int *bricks, int
     r[p].waves = l->waves;
     const sd_world world = {.ctx = r + p, .me = p, .ranks = ranks, .exchange = exchange};
     sd_grid *g = &r[p].grid;
-    assert_int_equal(sd_grid_create(g, l->size, l->occupied, ranks > 1 ? l->waves : l->size[2] / 2 + 1, bytes, &world), SD_OK);
+    const int waves = ranks > 1 ? l->waves : l->size[2] / 2 + 1;
+    assert_int_equal(sd_grid_create(g, l->size, l->occupied, waves, bytes, &world), SD_OK);
     assert_int_equal(sd_grid_place(g, bricks), SD_OK);
     memset(g->brick, 0, bytes * sd_grid_brick_numbers(g));
     EACH_POINT(g) add_to(g, i, j, k, c, force(p, i, j, k, c));
@@ -169,8 +171,8 @@ static void run(const layout *l, size_t bytes, int ranks, const int *bricks, int
 static void any_number_of_ranks_is_one(void **state)
 {
   (void) state;
-  const layout layouts[] = {{{6, 10, 8}, {6, 10, 8}, 1, 5}, {{24, 5, 9}, {24, 5, 9}, 1, 4}, {{8, 12, 10}, {4, 6, 5}, 0, 6},
-                            {{3, 4, 30}, {3, 4, 30}, 1, 16}, {{10, 9, 16}, {10, 9, 16}, 1, 6}};
+  const layout layouts[] = {{{6, 10, 8}, {6, 10, 8}, 1, 5}, {{24, 5, 9}, {24, 5, 9}, 1, 4},
+                            {{8, 12, 10}, {4, 6, 5}, 0, 6}, {{3, 4, 30}, {3, 4, 30}, 1, 16}, {{10, 9, 16}, {10, 9, 16}, 1, 6}};
   for (int k = 0; k < 5; k++) {
     const layout *l = layouts + k;
     double *whole = malloc(sizeof(double) * 3 * (size_t) (l->size[0] * l->size[1] * l->size[2]));
