@@ -119,7 +119,7 @@ foreach(name ${longest})
 endforeach()
 
 # Timings: cmake --build build --target bench_product bench_solve (unittest/bench/README.md)
-foreach(bench product solve resting ewald slab lubrication field speed_error)
+foreach(bench product solve resting ewald slab lubrication field speed_error tolerance)
   add_executable(bench_${bench} EXCLUDE_FROM_ALL ${tests}/../bench/bench_${bench}.c)
   target_include_directories(bench_${bench} PRIVATE ${tests} ${tests}/stokes ${cmocka_include})
   target_compile_options(bench_${bench} PRIVATE -Wall -Wextra -O2)

@@ -260,6 +260,29 @@ def test_other_programs_take_as_long_as_the_readme_and_the_page_on_accuracy_say(
             assert [min(of), max(of)] == said(cell) if of else not said(cell), (name, n, cell)
 
 
+COLUMNS_OF_SUMS = [("periodic", "float"), ("periodic", "double"), ("open", "float"), ("open", "double"),
+                   ("slit", "double")]
+
+
+def test_errors_of_sums_are_those_that_the_page_on_accuracy_says():
+    with open(PACKAGE.parent / "unittest" / "bench" / "speed_error.csv", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["spheres"] == "100000"]
+
+    def measured(engine, numbers, digits=1):
+        return {row["tolerance"]: re.sub("e-0", "e-", f"{float(row['error']):.{digits}e}") for row in rows
+                if (row["engine"], row["numbers"]) == (engine, numbers)}
+
+    text = PAGES["howto_accuracy.md"]
+    table = re.findall(r"^\| (1e-\d) \|" + r" ([^|]*) \|" * len(COLUMNS_OF_SUMS) + "$", text, re.M)
+    assert len(table) == 8
+    for tolerance, *cells in table:
+        errors = [measured(*column).get(f"{float(tolerance):g}", "") for column in COLUMNS_OF_SUMS]
+        assert [cell.strip() for cell in cells] == errors, tolerance
+        assert all(float(error) < float(tolerance) for error in errors if error), tolerance
+    pairs = [error for numbers in ("double", "float") for error in measured("all pairs", numbers, 0).values()]
+    assert f"the error is {pairs[0]}, and {pairs[1]} in single precision" in " ".join(text.split())
+
+
 # --- which LAMMPS commands go with ours -------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("room", neighbour_tables.HEADINGS)

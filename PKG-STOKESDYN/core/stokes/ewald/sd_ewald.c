@@ -31,11 +31,6 @@ static int sound(const sd_ewald_box *b, const sd_ewald_class *s, double toleranc
 /* xi times the largest radius where the parts need not be positive */
 static const double LARGEST = 1.5;
 
-static fall fall_for(const sd_ewald *e)
-{
-  return e->tolerance >= 1e-10 ? BAND : GAUSSIAN;
-}
-
 static splitting splitting_for(fall how, const sd_ewald_class *s, int width, double most)
 {
   const double rms = sd_ewald_six_digits(sqrt(s->squares / s->count));
@@ -69,9 +64,9 @@ static double least_range(const sd_ewald *e, const splitting *by, double y)
  * is not small. Found by errors in narrow slits, where without it they were 5 times the tolerance. */
 static double range_in_gap(const sd_ewald_box *box, const splitting *by, double t, double y)
 {
-  const double spacing = 3.0 * by->gap / (log(1.0 / t) + 3.0);
-  const double range = by->fall == BAND ? sd_splitting_band_spacings(box, by, t) * spacing : 1.4 * by->gap;
-  return fmax(range, fmax(y * by->spheres.largest / by->most, 2.0 * by->spheres.largest));
+  const double spacing = 3.0 * by->gap / (log(1.0 / t) + 3.0), largest = by->spheres.largest;
+  const double range = sd_splitting_band_spacings(box, by, t) * spacing;
+  return fmax(range, fmax(y * largest / by->most, 2.0 * largest));
 }
 
 /* Part of the tolerance that may be the error of the common flow */
@@ -157,8 +152,9 @@ static void end_at_band(sd_ewald *e, const splitting *by, double near)
 
 static sd_status one_level(sd_ewald *e, fall how, const sd_ewald_class *s, int width, double most)
 {
-  const splitting by = splitting_for(how, s, width, most);
+  splitting by = splitting_for(how, s, width, most);
   double near;
+  by.at_wall = e->images.wall.sign != 0;
   split(e, &by, &near);
   const sd_status status = sd_ewald_lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
   if (status == SD_OK && how == BAND) end_at_band(e, &by, near);
@@ -221,7 +217,7 @@ sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, 
   int some;
   const sd_status status = sd_ewald_prepare(box, &sizes->all, tolerance, out, &some);
   if (!some) return status;
-  const sd_status chosen = one_level(out, fall_for(out), &sizes->all, width, LARGEST);
+  const sd_status chosen = one_level(out, BAND, &sizes->all, width, LARGEST);
   out->single = floats_do(out, &sizes->all);
   return chosen;
 }
@@ -233,7 +229,7 @@ sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes
   const sd_status status = sd_ewald_prepare(box, &sizes->all, tolerance, out, &some);
   if (!some) return status;
   out->positive = bound;
-  return one_level(out, fall_for(out), &sizes->all, width, bound);
+  return one_level(out, BAND, &sizes->all, width, bound);
 }
 
 /* Heights above the wall multiply what grid and near part leave out of images. Part of the tolerance
@@ -249,6 +245,7 @@ sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
   sd_status status = sd_ewald_prepare(box, &sizes->all, tolerance, out, &some);
   if (!some) return status;
   const double asked = out->tolerance;
+  out->images.wall = *wall;
   out->tolerance = fmax(TIGHTEST, AT_WALL * asked);
   status = one_level(out, GAUSSIAN, &sizes->all, 3, LARGEST);
   out->images = (sd_ewald_images){*wall, out->xi, out->range, 0.0};
@@ -263,21 +260,19 @@ sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
 }
 
 /* Where the gap keeps the range short H needs a smaller reference radius, and windows are differentiated
- * also for equal spheres. *y is that of a Gaussian with the tolerance that is left. */
-static sd_status level_in_slab(sd_ewald *e, splitting *by, double *y)
+ * also for equal spheres. */
+static sd_status level_in_slab(sd_ewald *e, splitting *by)
 {
   double near;
   split(e, by, &near);
-  double y_of_fall = sd_splitting_y(&e->box, by, near);
-  if (e->range < (1.0 - 1e-9) * y_of_fall * by->a_ref / 0.8) {
+  const double y = sd_splitting_y(&e->box, by, near);
+  if (e->range < (1.0 - 1e-9) * y * by->a_ref / 0.8) {
     by->slopes = 1;
-    by->a_ref = sd_ewald_six_digits(0.8 * e->range / y_of_fall);
+    by->a_ref = sd_ewald_six_digits(0.8 * e->range / y);
     split(e, by, &near);
-    y_of_fall = sd_splitting_y(&e->box, by, near);
   }
-  *y = sqrt(log(1.0 / sd_splitting_tightened(by, e->tolerance, e->xi * y_of_fall)));
   const sd_status status = sd_ewald_lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
-  if (status == SD_OK && by->fall == BAND) end_at_band(e, by, near);
+  if (status == SD_OK) end_at_band(e, by, near);
   return status;
 }
 
@@ -299,19 +294,15 @@ static sd_status lay_planes(sd_ewald *e, int across, double span)
 }
 
 /* Nothing makes up for what the range of images cuts off, so that it is longer than that of the free part, and
- * more where it is not much shorter than the gap. A Gaussian's images are smoother, too: their waves must end
- * with the grid for any window. Found by errors; see sd_slab.h. */
+ * more where it is not much shorter than the gap. Found by errors; see sd_slab.h. */
 static const double IMAGES_FARTHER = 1.3, NARROW = 0.8, IMAGES_IN_NARROW = 1.5;
-static const double GAUSSIAN_SMOOTHER = 0.85, GAUSSIAN_FARTHER = 1.15;
 
-static void split_images(sd_ewald *e, const splitting *by, double y)
+static void split_images(sd_ewald *e, const splitting *by)
 {
-  e->images.band = e->band;
-  e->images.xi = GAUSSIAN_SMOOTHER * SD_PI / (2.2 * e->spacing * y);
   const int narrow = by->gap > 0.0 && e->range > NARROW * by->gap;
-  e->images.range = e->band > 0.0 ? (narrow ? IMAGES_IN_NARROW : IMAGES_FARTHER) * e->range
-                                  : GAUSSIAN_FARTHER * y / e->images.xi;
-  e->reach = fmax(e->range, e->images.range);
+  e->images.band = e->band;
+  e->images.range = (narrow ? IMAGES_IN_NARROW : IMAGES_FARTHER) * e->range;
+  e->reach = e->images.range;
 }
 
 /* In a tall cell the mean flow makes spheres a hundred times as fast as alone, and what windows mistake of it is
@@ -324,11 +315,10 @@ static const double WIDEST = 0.65;
 
 static sd_status try_in_slab(sd_ewald *e, splitting by, int across, double span)
 {
-  double y;
   by.tall = span > TALL * by.farthest / WIDEST;
-  sd_status status = level_in_slab(e, &by, &y);
+  sd_status status = level_in_slab(e, &by);
   if (status == SD_OK) status = lay_planes(e, across, span);
-  split_images(e, &by, y);
+  split_images(e, &by);
   return status;
 }
 
@@ -344,7 +334,7 @@ sd_status sd_ewald_choose_in_slab(const sd_ewald_box *box, int across, double sp
   if (!(tall.edge[across] > 0.0)) tall.edge[across] = 1.0; /* no spheres */
   sd_status status = sd_ewald_prepare(&tall, &sizes->all, tolerance, out, &some);
   if (!some) return status;
-  splitting by = splitting_for(fall_for(out), &sizes->all, 3, LARGEST);
+  splitting by = splitting_for(BAND, &sizes->all, 3, LARGEST);
   by.farthest = WIDEST * fmin(tall.edge[(across + 1) % 3], tall.edge[(across + 2) % 3]);
   by.gap = isfinite(gap) ? gap : 0.0;
   sd_ewald from;

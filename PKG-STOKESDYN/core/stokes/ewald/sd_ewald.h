@@ -37,7 +37,7 @@ SD_BEGIN_C
 /* The rule, for a box and its spheres.
  *   width       3, or 6 with torques
  *   tolerance   1e-13 ... 1e-1; outside of it the nearest of these is taken
- * Waves end at a band at 1e-10 and looser tolerances.
+ * Waves end at a band.
  * SD_OK, SD_ENOTFINITE for a box without volume, numbers that are not finite or a tolerance that
  * is not > 0, SD_ENOMEMORY for a grid of more than 2^31 points. */
 sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,

@@ -14,7 +14,8 @@ typedef struct {
   /* sign 0: there is no wall */
   sd_wall wall;
   double xi, range;
-  /* 0: the filters are those of a Gaussian; else their waves end here, 1/length (sd_image_wave.h) */
+  /* 0: the filters are those of a Gaussian; else their waves end here, 1/length (sd_image_wave.h), and xi
+   * is 0 */
   double band;
 } sd_ewald_images;
 

@@ -51,6 +51,16 @@ static double rms_of_b(const splitting *by)
 /* Part of the tolerance that unlike spheres may leave beyond the range; windows have the rest. */
 static const double UNLIKE = 0.62;
 
+/* Where few spheres are large, few pairs of them are just beyond the range, and what these leave may be larger than
+ * its rms over all places: the chance is small that it is larger by this. The fourth moment says how many there are,
+ * if all are as large as the largest. */
+static double more_of_few(const sd_ewald *e, const splitting *by, double K)
+{
+  const double large = by->spheres.fourths / pow(by->spheres.largest, 4.0);
+  const double pairs = large * large * 2.0 * SD_PI * e->range * e->range / (K * sd_ewald_volume(&e->box));
+  return sqrt(1.0 + 2.0 / sqrt(pairs));
+}
+
 /* b_i b_j (I_2 + J_2 hh) of sd_radial.h has k^4 more than I_0. At r = R the integral over k has its saddle at
  * imaginary waves of the order of K^2 R, not K, so that this part is larger by (K^2 R)^4 b_i b_j; and in H what x
  * gives there a_ref^2 k^2/3 takes away. Its rms over targets and sources of number density 1 beyond the range is
@@ -63,7 +73,7 @@ double sd_splitting_unlike(const sd_ewald *e, const splitting *by, double t)
   const double bend = hypot(0.2, 1.0 - pow(K * e->a_ref, 2.0) / 23.0);
   const double beyond = 3e-4 * pow(K * (KR - 3.0), 4.0) * KR * exp(-KR) * bend * rms_of_b(by);
   const double n = e->count / sd_ewald_volume(&e->box), rms = sqrt(by->spheres.squares / by->spheres.count);
-  return t * UNLIKE * e->tolerance / (6.0 * SD_PI * rms * sqrt(n * e->range) * beyond);
+  return t * UNLIKE / more_of_few(e, by, K) * e->tolerance / (6.0 * SD_PI * rms * sqrt(n * e->range) * beyond);
 }
 
 double sd_splitting_gaussian_y(const sd_ewald_box *box, double t)
@@ -125,8 +135,8 @@ int sd_splitting_points(double t)
   return whole_points(2.0 + log10(1.0 / t));
 }
 
-/* A point takes a digit from what windows mistake, and a little less with the beta of unlike spheres. Not all that
- * torques lose is the windows' fault. */
+/* A point takes a digit from what windows mistake, and a little less with the beta of unlike spheres and of images,
+ * whose heights multiply it. Not all that torques lose is the windows' fault. */
 int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, double t)
 {
   if (equal_turn(by)) {
@@ -134,7 +144,8 @@ int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, d
     return whole_points(1.4 + 1.15 * log10(loss / tolerance));
   }
   const double slower = by->fall == BAND && !by->equal ? 0.06 * fmax(0.0, log10(1.0 / tolerance) - 5.0) : 0.0;
-  return whole_points(2.0 + log10(1.0 / t) + slower);
+  const double heights = by->at_wall ? 0.9 * fmax(0.0, log10(1.0 / t) - 7.9) : 0.0;
+  return whole_points(2.0 + log10(1.0 / t) + slower + heights);
 }
 
 /* Of the window over its points: where it is differentiated its jump at the ends must be smaller; twice for

@@ -7,8 +7,8 @@
 #include "sd_ewald_sizes.h"
 
 /* How H falls: as a Gaussian, or to 0 at a band (sd_radial.h). For the same error a band needs less than
- * half of the grid. The functions of a Gaussian are known in closed form, which walls, two levels
- * (sd_ewald_levels.h) and the tightest tolerances want. */
+ * half of the grid. The functions of a Gaussian are known in closed form, which a wall in an open box and two
+ * levels (sd_ewald_levels.h) want. */
 typedef enum { GAUSSIAN, BAND } fall;
 
 /* What a splitting must know of the spheres and of what is asked */
@@ -23,6 +23,8 @@ typedef struct {
    * that is tried over that of a cube; is the slab a tower? */
   double farthest, gap, times;
   int tall;
+  /* are there images in a wall of an open box? */
+  int at_wall;
 } splitting;
 
 /* The tolerance t after what large spheres and torques lose: those larger than 1/xi have large wave and near

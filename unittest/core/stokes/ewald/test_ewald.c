@@ -148,7 +148,7 @@ static void another_splitting_has_the_same_answer(void **state)
     const reference s = reference_scene(varied[k]);
     const sd_ewald how = periodic_choose(&s.box, s.a, s.n, s.width, 1e-13);
     sd_ewald other = how; /* wave part over a finer grid, near part over a shorter range */
-    other.xi *= 1.15;
+    other.xi *= 1.15, other.band *= 1.15;
     other.range /= 1.15;
     if (s.a[0] != s.a[1]) other.a_ref *= 0.7; /* of equal ones it would be the windows' derivatives that limit */
     for (int d = 0; d < 3; d++) other.grid[d] = (int) (other.grid[d] * 0.75) * 2;

@@ -74,7 +74,7 @@ static void open_boxes_agree_with_all_pairs(void **state)
     const sd_spheres spheres = {s.x, s.a, s.w};
     double expected[6 * N], u[6 * N];
     plain_all(&law, &spheres, N, c->width, s.F, expected);
-    for (int digits = 3; digits <= 9; digits += CHECK_SIZE(3, 6)) {
+    for (int digits = 3; digits <= 12; digits += CHECK_SIZE(3, 9)) {
       const sd_ewald_sizes sizes = periodic_sizes(s.a, N);
       sd_ewald how;
       assert_int_equal(sd_ewald_choose(&s.box, &sizes, c->width, pow(10.0, -digits), &how), SD_OK);
@@ -205,8 +205,6 @@ static void waves_end_at_a_band(void **state)
   sd_ewald how;
   assert_int_equal(sd_ewald_choose(&box, &sizes, 3, 3e-7, &how), SD_OK);
   assert_true(how.band > 0.0 && how.grid[0] <= 84 && how.range < 13.5);
-  assert_int_equal(sd_ewald_choose(&box, &sizes, 3, 1e-11, &how), SD_OK);
-  assert_true(how.band == 0.0);
 }
 
 /* Random forces move all spheres of an open box together, the faster the more there are. A window of 8 points mistook that

@@ -264,6 +264,25 @@ static void walls_agree_with_all_pairs(void **state)
   }
 }
 
+/* Heights multiply what windows mistake: with windows as wide as those of free spheres it was 31 tolerances. */
+static void tight_tolerances_are_kept(void **state)
+{
+  (void) state;
+  const sd_wall wall = {2, 1, 5.7};
+  const scene s = make(clouds, &wall, 11);
+  const sd_law law = {.tensor = SD_TENSOR_RPY, .wall = wall};
+  double u[3 * N], expected[3 * N];
+  all_pairs(&law, &(sd_spheres){s.x, s.a, s.w}, s.F, expected);
+  for (int digits = 9; digits <= 11; digits += 2) {
+    const double tolerance = pow(10.0, -digits);
+    const sd_ewald how = split_of(&s, &wall, 1.0, tolerance);
+    products(&s, &how, 1, s.F, u);
+    const double error = error_of(&s, s.F, u, expected) / tolerance;
+    if (getenv("STOKESDYN_SHOW")) printf("digits %d: %.2f\n", digits, error);
+    assert_true(error < 1.0);
+  }
+}
+
 /* F.M G = G.M F to rounding: windows err alike at both ends. */
 static void the_matrix_is_symmetric(void **state)
 {
@@ -294,6 +313,7 @@ int main(void)
       cmocka_unit_test(near_images_are_images_less_their_smooth_part),
         cmocka_unit_test(the_slope_of_a_window_is_that_of_its_transform),
       cmocka_unit_test(walls_agree_with_all_pairs),
+      cmocka_unit_test(tight_tolerances_are_kept),
       cmocka_unit_test(the_matrix_is_symmetric),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -5,6 +5,7 @@
 #include "engine_free.h"
 
 #include "sd_mobility.h"
+#include "sd_neighbor.h"
 
 #include <string.h>
 
@@ -86,11 +87,57 @@ static void a_third_engine_is_one_table(void **state)
   scene_free(&s);
 }
 
+/* Spheres from 1 to 100 radii, pairs in touch and at one point; the first `many` of them */
+static scene hard_places(int many, double side, double origin)
+{
+  scene s = scene_create(many);
+  uint64_t seed = 5;
+  for (int i = 0; i < many; i++)
+    scene_set(&s, i, origin + uniform(&seed, 0, side), origin + uniform(&seed, 0, side), origin + uniform(&seed, 0, side),
+              exp(uniform(&seed, 0.0, log(100.0))), 1.3);
+  for (int i = 0; i + 1 < many; i += 2) /* every other pair at one point */
+    for (int d = 0; d < 3; d++) s.x[3 * i + 3 + d] = s.x[3 * i + d] + (d == 0 && i % 4 == 0 ? s.a[i] + s.a[i + 1] : 0.0);
+  return s;
+}
+
+/* A list of everybody is the sum over all: a hundred million radii from the origin, in a box of a million radii, for one sphere
+ * and for two at one point */
+static void a_list_knows_hard_places(void **state)
+{
+  (void) state;
+  enum { MANY = 60 };
+  const struct {
+    int many;
+    double side, origin;
+  } places[] = {{MANY, 500, 0}, {MANY, 500, 1e8}, {MANY, 1e6, -3e5}, {1, 10, 1e8}, {4, 10, 1e8}};
+  for (int k = 0; k < 5; k++)
+    for (int width = 3; width <= 6; width += 3) {
+      scene s = hard_places(places[k].many, places[k].side, places[k].origin);
+      double F[6 * MANY], u[2][6 * MANY];
+      uint64_t seed = 8;
+      sd_neighbors near = {0};
+      for (int i = 0; i < width * s.n; i++) F[i] = uniform(&seed, -1, 1) * pow(s.a[i / width], i % width < 3 ? 1.0 : 2.0);
+      assert_int_equal(sd_neighbors_cutoff(&near, s.x, s.n, s.n, 3.0 * places[k].side + 400.0), SD_OK);
+      for (int list = 0; list < 2; list++) {
+        const sd_mobility_scene scene = {.how = {.law = {.tensor = SD_TENSOR_RPY}, .width = width}, .n = s.n, .n_all = s.n,
+                                         .spheres = {s.x, s.a, s.w}, .pairs = list ? &near.pairs : NULL};
+        sd_mobility m = {0};
+        assert_int_equal(sd_mobility_place(&m, list ? &sd_mobility_list : &sd_mobility_all_pairs, &scene), SD_OK);
+        assert_int_equal(sd_mobility_apply(&m, F, u[list]), SD_OK);
+        sd_mobility_free(&m);
+      }
+      for (int i = 0; i < width * s.n; i++) CHECK_NEAR(u[1][i], u[0][i], 1e-12 * fmax(1.0, fabs(u[0][i])));
+      sd_neighbors_free(&near);
+      scene_free(&s);
+    }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_failure_of_the_caller_is_returned),
       cmocka_unit_test(a_third_engine_is_one_table),
+      cmocka_unit_test(a_list_knows_hard_places),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -194,6 +194,24 @@ static void errors_are_below_the_tolerance(void **state)
   }
 }
 
+/* One large sphere among small ones: where waves were Gaussians, polynomials of images were too short, and sums of two
+ * tolerances differed by up to 80 of these. */
+static void the_tightest_tolerance_is_kept(void **state)
+{
+  (void) state;
+  const double L = 30.0, H = 15.0;
+  const sd_slab_walls walls = sd_slab_slit(2, 0.0, H, 0);
+  const sd_ewald_box box = slab_box(2, L, L);
+  cloud c = make(L, L, H, 1.0, 3);
+  double u[2][3 * N];
+  c.a[0] = 5.0;
+  c.x[2] = 5.5;
+  for (int k = 0; k < 2; k++) slab_velocities(&walls, &box, c.x, c.a, N, k ? 1e-13 : 1e-12, c.F, u[k]);
+  const double error = error_of(&c, c.F, u[0], u[1]);
+  if (getenv("STOKESDYN_SHOW")) printf("tightest: %.2g\n", error);
+  assert_true(error < 1e-12);
+}
+
 /* --- one wave -- */
 
 /* Forces that stop a flow on two walls: the inverse of the flow that forces make there, (1) of sd_slab_wave.h */
@@ -488,6 +506,43 @@ static void nothing_depends_on_a_shift_along_the_walls(void **state)
   assert_true(error_of(&c, c.F, u, expected) < 1e-6);
 }
 
+/* As far from the origin as a coordinate keeps seven digits of a radius, with two at one point and two in touch */
+static void a_slab_may_stand_far_from_the_origin(void **state)
+{
+  (void) state;
+  cloud c = make(11, 12, 8.0, 10.0, 78);
+  const double off = ldexp(1.0, 27);
+  const sd_wall there = {2, 1, off};
+  const sd_slab_walls near = sd_slab_floor(&ground), far = sd_slab_floor(&there);
+  const sd_ewald_box box = slab_box(2, 11, 12);
+  double u[3 * N], expected[3 * N];
+  memcpy(c.x + 3, c.x, 3 * sizeof(double));
+  for (int d = 0; d < 3; d++) c.x[9 + d] = c.x[6 + d] + (d == 0) * (c.a[2] + c.a[3]);
+  for (int i = 0; i < 3 * N; i++) c.x[i] = ldexp(rint(ldexp(c.x[i], 24)), -24); /* digits that it keeps there */
+  slab_velocities(&near, &box, c.x, c.a, N, 1e-6, c.F, expected);
+  for (int i = 0; i < 3 * N; i++) c.x[i] += off;
+  slab_velocities(&far, &box, c.x, c.a, N, 1e-6, c.F, u);
+  assert_true(error_of(&c, c.F, u, expected) < 1e-6);
+}
+
+/* Two in touch on a floor in a cell of a million radii: as above one wall in an open box */
+static void a_huge_cell_is_open(void **state)
+{
+  (void) state;
+  const double x[6] = {3e5, 3e5, 1.5, 3e5 + 2.0, 3e5, 1.5}, a[2] = {1, 1}, F[6] = {1, 2, 3, -4, 5, 1};
+  const sd_slab_walls walls = sd_slab_floor(&ground);
+  const sd_ewald_box box = slab_box(2, 1e6, 1e6);
+  const sd_mobility_scene scene = {.how = {.law = {.tensor = SD_TENSOR_RPY, .wall = ground}, .width = 3},
+                                   .n = 2, .n_all = 2, .spheres = {x, a, a}};
+  sd_mobility m = {0};
+  double u[6], expected[6];
+  slab_velocities(&walls, &box, x, a, 2, 1e-6, F, u);
+  assert_int_equal(sd_mobility_place(&m, &sd_mobility_all_pairs, &scene), SD_OK);
+  assert_int_equal(sd_mobility_apply(&m, F, expected), SD_OK);
+  sd_mobility_free(&m);
+  for (int i = 0; i < 6; i++) CHECK_NEAR(u[i], expected[i] + F[i] / (6.0 * SD_PI), 1e-5);
+}
+
 /* A splitting lasts while spheres move within its heights, and says so when they do not. */
 static void a_splitting_lasts_until_spheres_leave_it(void **state)
 {
@@ -520,6 +575,7 @@ int main(void)
       cmocka_unit_test(velocities_are_those_of_dense_sums),
       cmocka_unit_test(a_lone_sphere_above_a_floor_is_that_of_dpstokes),
       cmocka_unit_test(errors_are_below_the_tolerance),
+      cmocka_unit_test(the_tightest_tolerance_is_kept),
       cmocka_unit_test(walls_stop_the_flow_of_their_own_forces),
       cmocka_unit_test(a_window_keeps_a_falling_wave),
       cmocka_unit_test(the_matrix_is_symmetric),
@@ -532,6 +588,8 @@ int main(void)
       cmocka_unit_test(a_cell_is_two_cells),
       cmocka_unit_test(no_flux_adds_a_poiseuille_flow),
       cmocka_unit_test(nothing_depends_on_a_shift_along_the_walls),
+      cmocka_unit_test(a_slab_may_stand_far_from_the_origin),
+      cmocka_unit_test(a_huge_cell_is_open),
       cmocka_unit_test(a_splitting_lasts_until_spheres_leave_it),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

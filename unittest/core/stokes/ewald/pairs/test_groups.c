@@ -35,9 +35,10 @@ static cloud make(double small)
   return c;
 }
 
-static void near_part(const cloud *c, const sd_groups *groups, const struct sd_ewald_kernels *kernels, double *u)
+static void near_part_at(const cloud *c, double origin, const sd_groups *groups, const struct sd_ewald_kernels *kernels,
+                         double *u)
 {
-  const sd_ewald_box box = {.periodic = 1, .edge = {12, 12, 12}};
+  const sd_ewald_box box = {.periodic = 1, .origin = {origin, origin, origin}, .edge = {12, 12, 12}};
   const sd_ewald how = periodic_choose(&box, c->a, N, 3, 1e-4);
   const sd_spheres spheres = {c->x, c->a, c->w};
   sd_ewald_pairs p = {0};
@@ -48,6 +49,11 @@ static void near_part(const cloud *c, const sd_groups *groups, const struct sd_e
   sd_ewald_pairs_apply(&p);
   sd_ewald_pairs_take(&p, N, c->F, NULL, NULL, NULL, u);
   sd_ewald_pairs_free(&p);
+}
+
+static void near_part(const cloud *c, const sd_groups *groups, const struct sd_ewald_kernels *kernels, double *u)
+{
+  near_part_at(c, 0.0, groups, kernels, u);
 }
 
 static void check(const cloud *c, const sd_groups *groups, sd_isa isa)
@@ -127,12 +133,38 @@ static void near_part_is_symmetric(void **state)
   CHECK_NEAR(uF, vG, 1e-13 * size);
 }
 
+/* A hundred million radii from the origin, shells of 1 : 100, two at one point and two in touch: in floats and by groups the
+ * digits of doubles, point by point */
+static void hard_places_have_the_same_digits(void **state)
+{
+  (void) state;
+  static double expected[3 * N], u[3 * N];
+  for (int far = 0; far < 2; far++)
+    for (int unlike = 0; unlike < 2; unlike++) {
+      cloud c = make(unlike ? 0.01 : 1.0);
+      const double origin = far ? 1e8 : 0.0;
+      const sd_groups groups = {ALL, c.first, c.form}, none = {0};
+      double scale = 0.0;
+      memcpy(c.x + 3 * 24, c.x, 3 * 12 * sizeof(double));        /* shell 2 where shell 0 is */
+      for (int k = 0; k < 36; k++) c.x[3 * 48 + k] = c.x[k] + 2.0 * (k % 3 == 0) * (unlike ? 0.01 : 1.0);
+      for (int i = 0; i < 3 * N_ALL; i++) c.x[i] += origin;
+      near_part_at(&c, origin, &none, SD_KERNELS_OF(sd_ewald, plain, SD_ISA_PLAIN), expected);
+      for (int i = 0; i < 3 * N; i++) scale = fmax(scale, fabs(expected[i]));
+      for (int k = 0; k < 4; k++) {
+        if (!sd_isa_supported(sets[k])) continue;
+        near_part_at(&c, origin, &groups, SD_KERNELS_OF(sd_ewald_single, plain, sets[k]), u);
+        for (int i = 0; i < 3 * N; i++) CHECK_NEAR(u[i], expected[i], 1e-6 * scale);
+      }
+    }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(forms_change_nothing),
       cmocka_unit_test(any_groups_will_do),
       cmocka_unit_test(near_part_is_symmetric),
+      cmocka_unit_test(hard_places_have_the_same_digits),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
