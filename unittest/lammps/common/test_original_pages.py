@@ -13,9 +13,8 @@ import model
 from system import Spheres, input_lines, largest_difference, lmp, read_dump
 
 STOKES = """\
-pair_style stokes_dynamics cut_off_distance 1e-2 clumps_only yes update_every 10 visc 1e-2 add_force yes \
- relative_tolerance 1e-3 \
-max_iter 100 algorithm 1
+pair_style stokes_dynamics cut_off_distance 1e-2 clumps_only yes update_every 10 visc 1e-2 \
+add_force yes relative_tolerance 1e-3 max_iter 100 algorithm 1
 pair_coeff * *"""
 
 SPH = ["pair_style sph/artVisc/tensCorr wendland 0.001 artVisc 1e-4 0 1e-8",

@@ -1,4 +1,5 @@
-"""The rooms of the house: what a model may include, as its include path has it. The build tells it in compile_commands.json."""
+"""The rooms of the house: what a model may include, as its include path has it. The build tells it in
+compile_commands.json."""
 import json
 import os
 import pathlib
@@ -12,8 +13,10 @@ TOP = pathlib.Path(__file__).resolve().parents[3]
 BUILD = os.environ["LAMMPS_PLUGIN_PATH"]
 
 # a header of each room, and of the libraries
-OF = {"base": "sd_status.h", "drag": "sd_drag.h", "stokes": "sd_tensor.h", "sph": "sd_sph_kernel.h", "vans": "sd_vans.h", "LAMMPS": "lammps.h", "MPI": "mpi.h",
-      "common": "keywords.h", "glue of stokes": "pair_stokes_dynamics.h", "glue of sph": "sph.h", "glue of vans": "vans_settings.h"}
+OF = {"base": "sd_status.h", "drag": "sd_drag.h", "stokes": "sd_tensor.h", "sph": "sd_sph_kernel.h",
+      "vans": "sd_vans.h", "LAMMPS": "lammps.h", "MPI": "mpi.h",
+      "common": "keywords.h", "glue of stokes": "pair_stokes_dynamics.h", "glue of sph": "sph.h",
+      "glue of vans": "vans_settings.h"}
 SEES = {
     "stokesdyn_base": {"base"}, "stokesdyn_drag": {"base", "drag"}, "stokesdyn_stokes": {"base", "stokes"},
     "stokesdyn_sph": {"base", "drag", "sph"}, "stokesdyn_vans": {"base", "drag", "vans"},
@@ -37,8 +40,9 @@ def test_a_room_sees_itself_and_what_is_below(target):
     seen = set()
     for room, header in OF.items():
         language = "c++" if target.startswith("styles") else "c"
-        done = subprocess.run(compiler(target) + ["-x", language, "-E", "-o", os.devnull, "-"], input=f'#include "{header}"\n',
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        done = subprocess.run(compiler(target) + ["-x", language, "-E", "-o", os.devnull, "-"],
+                              input=f'#include "{header}"\n', stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True)
         assert done.returncode == 0 or f"{header}: No such file" in done.stdout, done.stdout
         if done.returncode == 0:
             seen.add(room)
@@ -47,15 +51,18 @@ def test_a_room_sees_itself_and_what_is_below(target):
 
 def test_who_asks_the_boundary_stands_in_the_map():
     stokes = TOP / "PKG-STOKESDYN" / "stokes"
-    asks = {path.stem for path in stokes.iterdir() if re.search(r"\bboundary\.(?!h\b)\w|[.&]boundary\b|\bboundary,", path.read_text())}
+    asks = {path.stem for path in stokes.iterdir() if re.search(r"\bboundary\.(?!h\b)\w|[.&]boundary\b|\bboundary,",
+                                                                path.read_text())}
     asks -= {"boundary", "boundary_checks"}
-    listed = re.search(r"\n\* \*\*Walls\.\*\*(.*?)\n\* ", (TOP / "PKG-STOKESDYN" / "README.md").read_text(), re.S).group(1)
+    listed = re.search(r"\n\* \*\*Walls\.\*\*(.*?)\n\* ", (TOP / "PKG-STOKESDYN" / "README.md").read_text(),
+                       re.S).group(1)
     assert "scene" in asks
     assert not [name for name in sorted(asks) if f"`{name}`" not in listed]
 
 
 def test_every_engine_climbs_the_ladder():
-    engines = re.findall(r"^extern const sd_mobility_engine (\w+);", (TOP / "PKG-STOKESDYN/core/stokes/mobility/sd_mobility.h").read_text(), re.M)
+    engines = re.findall(r"^extern const sd_mobility_engine (\w+);",
+                         (TOP / "PKG-STOKESDYN/core/stokes/mobility/sd_mobility.h").read_text(), re.M)
     placed = (TOP / "unittest/core/stokes/mobility/engines.h").read_text()
     assert len(engines) >= 5
     assert not [name for name in engines if f"engine = &{name};" not in placed]
@@ -74,18 +81,22 @@ def test_a_name_of_a_function_stands_in_one_file():
 
 def sources_below():
     """{source: sources that it calls}, {header: headers that it includes} of the core"""
-    texts = {path: re.sub(r"/\*.*?\*/|//[^\n]*", "", path.read_text(), flags=re.S) for path in (TOP / "PKG-STOKESDYN/core").rglob("*.[ch]")}
+    texts = {path: re.sub(r"/\*.*?\*/|//[^\n]*", "", path.read_text(), flags=re.S)
+             for path in (TOP / "PKG-STOKESDYN/core").rglob("*.[ch]")}
     sources = {path: text for path, text in texts.items() if path.suffix == ".c"}
     headers = {path.name: text for path, text in texts.items() if path.suffix == ".h"}
     defined = {name: path.name for path, text in sources.items()
                for name in re.findall(r"^(?!static|typedef)\w[\w *]*?\b(sd_\w+)\([^;{}]*\)\s*\{", text, re.M)}
-    calls = {path.name: {defined[name] for name in re.findall(r"\b(sd_\w+)\(", text) if name in defined} for path, text in sources.items()}
-    includes = {name: {other for other in re.findall(r'#include "([^"]+)"', text) if other in headers} for name, text in headers.items()}
+    calls = {path.name: {defined[name] for name in re.findall(r"\b(sd_\w+)\(", text) if name in defined}
+             for path, text in sources.items()}
+    includes = {name: {other for other in re.findall(r'#include "([^"]+)"', text) if other in headers}
+                for name, text in headers.items()}
     return calls, includes
 
 
 def circles(arrows):
-    """What is left when files that stand on nothing are taken away, again and again: circles, and what stands on them"""
+    """What is left when files that stand on nothing are taken away, again and again: circles, and what stands on
+    them"""
     left = {name: below - {name} for name, below in arrows.items()}
     while ground := {name for name, below in left.items() if not below & set(left)}:
         left = {name: below for name, below in left.items() if name not in ground}
@@ -99,7 +110,8 @@ def test_no_files_of_the_core_call_or_include_each_other_in_a_circle():
 
 
 def test_no_files_of_the_glue_include_each_other_in_a_circle():
-    """A header and the source of its name count as one; further sources of a class include both sides, and nobody includes them."""
+    """A header and the source of its name count as one; further sources of a class include both sides, and nobody
+    includes them."""
     texts = {}
     for room in ("common", "stokes", "sph", "vans"):
         for path in (TOP / "PKG-STOKESDYN" / room).iterdir():
@@ -108,3 +120,19 @@ def test_no_files_of_the_glue_include_each_other_in_a_circle():
     includes = {name: set(re.findall(r'#include "([^"]+)\.h"', text)) & set(texts) for name, text in texts.items()}
     assert "pair_sph_artvisc_tenscorr" in includes["fix_sph_friction"] and "scene" in includes["solve"]
     assert circles(includes) == {}
+
+
+# --- how sources read -------------------------------------------------------------------------------------------------
+
+def scripts():
+    """Sources and inputs beside the package: no data, logs, pictures and pages"""
+    kinds = (".py", ".c", ".h", ".cpp", ".sh", ".cmake")
+    return [path for room in ("unittest", "examples", "cmake") for path in sorted((TOP / room).rglob("*"))
+            if path.name.endswith(kinds) or path.name.startswith(("in.", "CMakeLists"))]
+
+
+def test_lines_of_scripts_have_at_most_120_columns():
+    files = scripts()
+    assert len(files) > 500
+    assert not [f"{path.relative_to(TOP)}:{number}" for path in files
+                for number, line in enumerate(path.read_text().splitlines(), 1) if len(line) > 120]

@@ -50,7 +50,8 @@ def inside(x, box, tilt):
 
 
 def moving(name, motion):
-    """Lines of the scene with the velocities of the resistance problem R, or with one velocity for all, S; the reference."""
+    """Lines of the scene with the velocities of the resistance problem R, or with one velocity for all, S; the
+    reference."""
     about, rows = scene(name)
     box, tilt = box_of(about)
     if motion == "R":
@@ -90,7 +91,8 @@ def test_forces_are_those_of_the_periodic_sum(simulation, name, motion, toleranc
 @pytest.mark.parametrize("name", ["p04", "p07", "p12", "p14"])
 def test_one_two_three_and_four_ranks_are_one(tmp_path, name):
     spheres, words, where, spins, reference = moving(name, "R")
-    lines = input_lines(spheres, words + " relative_tolerance 1e-12 far_field_tolerance 1e-12", tmp_path / "data", **where)
+    lines = input_lines(spheres, words + " relative_tolerance 1e-12 far_field_tolerance 1e-12", tmp_path / "data",
+                        **where)
     lines = ["box tilt large"] + lines + spins + dump_lines(tmp_path / "dump", columns=FORCES) + ["run 0"]
     first = None
     for ranks in allowed(1, 2, 3, 4):
@@ -148,13 +150,15 @@ def said(log):
 @pytest.mark.parametrize("n,split", [(200, False), (6000, True)])
 def test_auto_splits_the_sum_of_large_open_clouds(simulation, tmp_path, n, split):
     log = tmp_path / "log"
-    simulation(cloud(n, 0.1), "cut_off_distance inf algorithm 2 visc 1 relative_tolerance 1e-1", log=log).run().run().close()
+    simulation(cloud(n, 0.1), "cut_off_distance inf algorithm 2 visc 1 relative_tolerance 1e-1",
+               log=log).run().run().close()
     assert len(said(log)) == split      # once, though there are two runs
 
 
 def test_a_box_that_is_changed_between_runs(simulation, tmp_path):
     """The parameters are told again, and the forces are those of a new run in the new box."""
-    log, spheres, words = tmp_path / "log", cloud(60, 0.1), f"{ALL} visc 1 relative_tolerance 1e-9 far_field_tolerance 1e-4"
+    log, spheres, words = tmp_path / "log", cloud(60,
+                                                  0.1), f"{ALL} visc 1 relative_tolerance 1e-9 far_field_tolerance 1e-4"
     sim = simulation(spheres, words, log=log, boundary="p p p", box=[(0.0, 40.0)] * 3).run().run()
     sim.command("change_box all x final 0 50 y final 0 50 z final 0 50 remap")
     forces = sim.run().drag
@@ -169,19 +173,22 @@ def test_a_box_that_is_changed_between_runs(simulation, tmp_path):
 
 @pytest.mark.parametrize("boundary", ["p f f", "f p s", "m f p"])
 def test_boxes_with_one_period_are_refused(simulation, boundary):
-    with pytest.raises(LammpsError, match="cut_off_distance: 'inf' requires a box that is periodic in all three.*p p p.*clumps_only"):
+    with pytest.raises(LammpsError, match="cut_off_distance: 'inf' requires a box that is periodic in all three.*p p "
+                                          "p.*clumps_only"):
         simulation(cloud(5, 0.01), f"{ALL} visc 1", boundary=boundary, box=[(-1.0, 40.0)] * 3).run()
 
 
 def test_periodic_planes_are_refused(simulation):
     flat = Spheres([(1, 1, 0), (4, 2, 0)], 0.5, (0, 1, 0))
     sim = simulation()
-    lines = input_lines(flat, f"{ALL} visc 1", str(sim.folder / "flat.data"), boundary="p p p", box=[(0, 9), (0, 9), (-0.5, 0.5)])
+    lines = input_lines(flat, f"{ALL} visc 1", str(sim.folder / "flat.data"), boundary="p p p",
+                        box=[(0, 9), (0, 9), (-0.5, 0.5)])
     with pytest.raises(LammpsError, match="cut_off_distance: 'inf' in two dimensions requires boundary f f p"):
         sim.commands(["dimension 2"] + lines).run()
 
 
-@pytest.mark.parametrize("words,text", [("far_field direct", "far_field direct"), ("precondition sparse", "precondition sparse"),
+@pytest.mark.parametrize("words,text", [("far_field direct", "far_field direct"),
+                                        ("precondition sparse", "precondition sparse"),
                                         ("tensor oseen", "tensor: 'oseen'")])
 def test_what_a_periodic_sum_has_not_got(simulation, words, text):
     with pytest.raises(LammpsError, match=text + ".*not periodic"):
@@ -211,11 +218,12 @@ def test_few_large_spheres_in_an_open_cloud_have_the_forces_of_all_pairs(simulat
 @pytest.mark.ranks(3)
 def test_two_levels_on_three_ranks(tmp_path):
     spheres = wide(np.random.default_rng(6).uniform(0, 24.0, (250, 3)))
-    lines = input_lines(spheres, f"{ALL} visc 1.3 rotation no relative_tolerance 1e-11 far_field_tolerance 1e-6", tmp_path / "data",
-                        boundary="p p p", box=[(0.0, 24.0)] * 3, tilt=(4.0, -3.0, 2.0))
+    lines = input_lines(spheres, f"{ALL} visc 1.3 rotation no relative_tolerance 1e-11 far_field_tolerance 1e-6",
+                        tmp_path / "data", boundary="p p p", box=[(0.0, 24.0)] * 3, tilt=(4.0, -3.0, 2.0))
     first = None
     for ranks in (1, 3):
-        run = lmp(tmp_path, ["box tilt large"] + lines + dump_lines(tmp_path / "dump", columns=FORCES) + ["run 0"], ranks=ranks)
+        run = lmp(tmp_path, ["box tilt large"] + lines + dump_lines(tmp_path / "dump", columns=FORCES) + ["run 0"],
+                  ranks=ranks)
         assert "on a second level" in run.log
         rows = read_dump(tmp_path / "dump")[0][1][:, 6:]
         first = rows if first is None else first
@@ -231,18 +239,20 @@ def final(sim):
 @pytest.mark.parametrize("boundary", ["p p p", "f f f"])
 @pytest.mark.parametrize("restart", [False, True])
 def test_a_run_in_two_pieces(simulation, tmp_path, boundary, restart):
-    """The open box around the cloud, which lasts while the spheres move, is kept too. In double precision, as solves below 1e-4
-    have it: atoms stand in another order then, and so do sums."""
+    """The open box around the cloud, which lasts while the spheres move, is kept too. In double precision, as solves
+    below 1e-4 have it: atoms stand in another order then, and so do sums."""
     spheres = cloud(40, 0.05, ratio=1.5)
     words = "cut_off_distance inf visc 1.3 algorithm 2 far_field ewald far_field_tolerance 1e-2 relative_tolerance 9e-5"
     lines = input_lines(spheres, words, tmp_path / "data",
-                        boundary=boundary, box=[(-20.0, 45.0)] * 3 if "f" in boundary else [(0.0, 25.0)] * 3, fix=False, dt=0.05)
+                        boundary=boundary, box=[(-20.0, 45.0)] * 3 if "f" in boundary else [(0.0, 25.0)] * 3, fix=False,
+                        dt=0.05)
     rest = ["fix drag all stokes_dynamics apply no", "fix move all nve"]
     whole = final(simulation().commands(lines + rest).run(30))
     sim = simulation().commands(lines + rest).run(17)
     if restart:
         sim.command(f"write_restart {tmp_path}/mid")
-        sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", "timestep 0.05"] + rest)
+        sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid",
+                                     "timestep 0.05"] + rest)
     assert np.abs(final(sim.run(13)) - whole).max() < 1e-10 * np.abs(whole).max()
 
 
@@ -250,12 +260,14 @@ def test_a_run_in_two_pieces(simulation, tmp_path, boundary, restart):
 def test_a_box_that_shrinks_and_shears_in_the_run(simulation, tmp_path, ranks):
     """Forces of a step are those that a new run finds for the box and the spheres as the step before has left them."""
     words = f"{ALL} visc 1.3 relative_tolerance 1e-10 far_field_tolerance 1e-10"
-    lines = input_lines(cloud(50, 0.1), words, tmp_path / "data", boundary="p p p", box=[(0.0, 30.0)] * 3, tilt=(0.0, 0.0, 0.0), dt=0.01)
-    lines += ["fix squeeze all deform 1 x scale 0.7 z scale 0.9 xy erate 3.2 remap x", *dump_lines(tmp_path / "dump", every=11),
-              f"restart 10 {tmp_path}/last", "run 11"]
+    lines = input_lines(cloud(50, 0.1), words, tmp_path / "data", boundary="p p p", box=[(0.0, 30.0)] * 3,
+                        tilt=(0.0, 0.0, 0.0), dt=0.01)
+    lines += ["fix squeeze all deform 1 x scale 0.7 z scale 0.9 xy erate 3.2 remap x",
+              *dump_lines(tmp_path / "dump", every=11), f"restart 10 {tmp_path}/last", "run 11"]
     lmp(tmp_path, lines, ranks=ranks)
     (_, before), (_, after) = read_dump(tmp_path / "dump")
-    again = ["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/last.10", f"pair_style stokes_dynamics {words} warm_start no",
+    again = ["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/last.10",
+             f"pair_style stokes_dynamics {words} warm_start no",
              "pair_coeff * *", "fix drag all stokes_dynamics apply no"]
     sim = simulation().commands(again).run()
     assert np.linalg.norm(sim.drag - after[:, 6:9]) < 1e-8 * np.linalg.norm(sim.drag)
@@ -289,8 +301,8 @@ def test_waves_take_off_iterations_and_leave_the_answer(simulation, scene, gain,
     spheres, side = scene
     found = {}
     for how in ("none", "waves"):
-        sim = simulation(spheres, f"{ALL} visc 1.3 warm_start no relative_tolerance 1e-7 far_field_tolerance 1e-4 rotation {rotation} "
-                         f"precondition {how}", boundary="p p p", box=[(0.0, side)] * 3).run()
+        sim = simulation(spheres, f"{ALL} visc 1.3 warm_start no relative_tolerance 1e-7 far_field_tolerance 1e-4 "
+                         f"rotation {rotation} precondition {how}", boundary="p p p", box=[(0.0, side)] * 3).run()
         found[how] = sim.iterations, sim.drag
     assert found["none"][0] > gain * found["waves"][0]
     assert np.linalg.norm(found["none"][1] - found["waves"][1]) < 1e-5 * np.linalg.norm(found["none"][1])
@@ -300,8 +312,9 @@ def test_waves_take_off_iterations_and_leave_the_answer(simulation, scene, gain,
 @pytest.mark.ranks(3)
 def test_waves_on_three_ranks(tmp_path, rotation):
     spheres, side = doublets(5, 0.3)
-    lines = input_lines(spheres, f"{ALL} visc 1.3 warm_start no relative_tolerance 1e-10 far_field_tolerance 1e-11 precondition waves "
-                        f"rotation {rotation}", tmp_path / "data", boundary="p p p", box=[(0.0, side)] * 3)
+    lines = input_lines(spheres, f"{ALL} visc 1.3 warm_start no relative_tolerance 1e-10 far_field_tolerance 1e-11 "
+                        f"precondition waves rotation {rotation}", tmp_path / "data", boundary="p p p",
+                        box=[(0.0, side)] * 3)
     rows = []
     for ranks in (1, 3):
         lmp(tmp_path, lines + dump_lines(tmp_path / "dump", columns=FORCES) + ["run 0"], ranks=ranks)
@@ -314,8 +327,8 @@ def test_auto_takes_the_waves_in_a_run(simulation):
     spheres, side = lattice(8, 0.3)
     iterations = {}
     for how in ("none", "auto"):
-        sim = simulation(spheres, f"{ALL} visc 1.3 relative_tolerance 1e-6 precondition {how}", boundary="p p p", box=[(0.0, side)] * 3,
-                         dt=1e-3)
+        sim = simulation(spheres, f"{ALL} visc 1.3 relative_tolerance 1e-6 precondition {how}", boundary="p p p",
+                         box=[(0.0, side)] * 3, dt=1e-3)
         sim.commands(["unfix drag", "fix drag all stokes_dynamics apply no", "fix move all nve"])
         rng = np.random.default_rng(3)
         for k in range(8):
@@ -327,7 +340,8 @@ def test_auto_takes_the_waves_in_a_run(simulation):
 
 @pytest.mark.parametrize("dt,warned", [(0.02, False), (2.0, True)])
 def test_the_time_step_guard_watches_in_a_periodic_box(simulation, tmp_path, dt, warned):
-    """lambda is the smallest eigenvalue of the mobility scaled to unit diagonal; a sphere alone forgets its velocity in m/(6 pi eta a)."""
+    """lambda is the smallest eigenvalue of the mobility scaled to unit diagonal; a sphere alone forgets its velocity in
+    m/(6 pi eta a)."""
     spheres, side = lattice(5, 0.3)
     log, mass, drag = tmp_path / "log", 1.7 * 4 / 3 * np.pi, 6 * np.pi * 1.3
     sim = simulation(spheres, f"{ALL} visc 1.3", log=log, boundary="p p p", box=[(0.0, side)] * 3, dt=dt * mass / drag)

@@ -21,7 +21,8 @@ def test_one_sphere_in_a_periodic_box(simulation):
     """Hasimoto: 1/K = 1 - 1.7601 phi^(1/3) + phi for spheres that do not overlap, at this level exactly."""
     a, L = 0.7, 9.0
     phi = 4 / 3 * np.pi * a**3 / L**3
-    sim = simulation(Spheres([(1, 2, 3)], a, (0.1, 0.2, 0.3)), f"{ALL} relative_tolerance 1e-10 far_field_tolerance 1e-10", **PERIODIC).run()
+    sim = simulation(Spheres([(1, 2, 3)], a, (0.1, 0.2, 0.3)),
+                     f"{ALL} relative_tolerance 1e-10 far_field_tolerance 1e-10", **PERIODIC).run()
     K = 1 / (1 - 2.837297479480620 * a / L + phi)
     assert np.abs(sim.drag[0] / (STOKES * a * np.array([0.1, 0.2, 0.3])) + K).max() < 1e-9 * K
 
@@ -50,7 +51,8 @@ def test_a_sphere_larger_than_the_box(simulation):
 
 @pytest.mark.hard_case("far field: a sphere a thousand times larger than the box")
 def test_a_sphere_out_of_all_proportion(simulation):
-    with pytest.raises(LammpsError, match="far_field: the largest sphere, radius 9000, is so large for the periodic box"):
+    with pytest.raises(LammpsError,
+                       match="far_field: the largest sphere, radius 9000, is so large for the periodic box"):
         simulation(Spheres([(1, 2, 3)], 9000.0, (0.1, 0.2, 0.3)), ALL, **PERIODIC).run()
 
 
@@ -59,7 +61,8 @@ def test_a_sphere_out_of_all_proportion(simulation):
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_an_empty_group(tmp_path, where, ranks):
     spheres = Spheres([(1, 2, 3), (4, 4, 4)], 0.7, (0.1, 0.2, 0.3))
-    lines = input_lines(spheres, f"{ALL} far_field ewald group nobody", tmp_path / "data", before_pair="group nobody empty", **where)
+    lines = input_lines(spheres, f"{ALL} far_field ewald group nobody", tmp_path / "data",
+                        before_pair="group nobody empty", **where)
     lmp(tmp_path, lines + ["run 2"], ranks=ranks)
 
 
@@ -69,8 +72,10 @@ def test_a_cloud_in_one_corner(tmp_path):
     spheres = Spheres(rng.uniform(0, 10, (60, 3)), 0.7, (0, 0, 0.4))
     forces = []
     for ranks, box in ((1, None), (2, [(-1.0, 900.0)] * 3)):
-        lines = input_lines(spheres, f"{ALL} far_field ewald relative_tolerance 1e-4 far_field_tolerance 1e-9", tmp_path / "data", box=box)
-        lmp(tmp_path, lines + [f"dump out all custom 1 {tmp_path}/dump id f_drag[1] f_drag[2] f_drag[3]", "dump_modify out sort id format float %.15g",
+        lines = input_lines(spheres, f"{ALL} far_field ewald relative_tolerance 1e-4 far_field_tolerance 1e-9",
+                            tmp_path / "data", box=box)
+        lmp(tmp_path, lines + [f"dump out all custom 1 {tmp_path}/dump id f_drag[1] f_drag[2] f_drag[3]",
+                               "dump_modify out sort id format float %.15g",
                                "run 0"], ranks=ranks)
         forces.append(np.loadtxt(tmp_path / "dump", skiprows=9)[:, 1:])
     assert largest_difference(forces[1], forces[0]) < 1e-7
@@ -84,8 +89,8 @@ def test_any_decomposition(tmp_path, where):
     spheres = Spheres(9 * rng.uniform(0, 1, (80, 3))**2, 0.7, rng.normal(size=(80, 3)))
     forces = []
     for ranks, comm, newton in ((1, "", "on"), (3, "comm_style tiled\nbalance 1.0 rcb\nneighbor 1.5 bin", "off")):
-        lines = input_lines(spheres, f"{ALL} far_field ewald relative_tolerance 1e-11 far_field_tolerance 1e-9", tmp_path / "data",
-                            newton=newton, **where)
+        lines = input_lines(spheres, f"{ALL} far_field ewald relative_tolerance 1e-11 far_field_tolerance 1e-9",
+                            tmp_path / "data", newton=newton, **where)
         lines = [line for line in lines if not line.startswith("comm_modify mode")] + comm.splitlines()
         lmp(tmp_path, lines + [f"dump out all custom 1 {tmp_path}/dump id f_drag[1] f_drag[2] f_drag[3]",
                                "dump_modify out sort id format float %.15g", "run 0"], ranks=ranks)
@@ -95,7 +100,8 @@ def test_any_decomposition(tmp_path, where):
 
 @pytest.mark.hard_case("far field: algorithm 1 in a periodic box, where it diverges")
 def test_substitution_in_a_periodic_box(simulation):
-    spheres = Spheres(3.0 * np.stack(np.meshgrid(*3 * [np.arange(4.0)], indexing="ij"), axis=-1).reshape(-1, 3), 1.0, (0.1, 0.2, 0.3))
+    spheres = Spheres(3.0 * np.stack(np.meshgrid(*3 * [np.arange(4.0)], indexing="ij"), axis=-1).reshape(-1, 3), 1.0,
+                      (0.1, 0.2, 0.3))
     words = "cut_off_distance inf visc 1.3 relative_tolerance 1e-6"
     where = dict(boundary="p p p", box=[(0.0, 12.0)] * 3)
     reference = simulation(spheres, words + " algorithm 2", **where).run().drag

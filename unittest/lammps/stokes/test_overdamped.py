@@ -1,4 +1,5 @@
-"""fix stokes_dynamics/overdamped of free spheres: paths against converged ones (unittest/data/motion), closed forms, orders, steps."""
+"""fix stokes_dynamics/overdamped of free spheres: paths against converged ones (unittest/data/motion), closed forms,
+orders, steps."""
 import csv
 import os
 
@@ -43,7 +44,8 @@ def test_path_to_eight_digits_with_a_small_step(simulation):
 @pytest.mark.parametrize("dt", [1e-3, 7.0])
 def test_lone_sphere_is_exact(simulation, dt):
     eta, a = 1.3, 0.7
-    sim = simulation(Spheres([(1, 2, 3)], a), f"cut_off_distance inf visc {eta} rotation yes", fix=False, box=[(-900, 900.0)] * 3, dt=dt)
+    sim = simulation(Spheres([(1, 2, 3)], a), f"cut_off_distance inf visc {eta} rotation yes", fix=False,
+                     box=[(-900, 900.0)] * 3, dt=dt)
     sim.commands(f"fix pull all addforce 0.4 0.1 -0.2\n{FIX}").run(50)
     U = np.array((0.4, 0.1, -0.2)) / (P6 * eta * a)
     assert np.abs(sim.x[0] - (1, 2, 3) - 50 * dt * U).max() < 1e-14 * (3 + 50 * dt) * 3
@@ -118,12 +120,15 @@ def test_stream_carries_and_turns(simulation):
 
 @pytest.mark.parametrize("scheme, limit", [("ab2", 1.0), ("euler", 2.0)])
 def test_contacts_limit_the_step_as_they_should(simulation, scheme, limit):
-    """Two spheres pressed together by 2 F against a spring k: stable while dt k mu < limit, mu that of their approach."""
+    """Two spheres pressed together by 2 F against a spring k: stable while dt k mu < limit, mu that of their
+    approach."""
     k, F, a = 50.0, 1.0, 1.0
     overlap = F / k
-    mu = 2 / P6 * (1 - model.velocity_of_force(np.array([[0, 0, 0], [2.0 - overlap, 0, 0]]), np.ones(2))[0, 1, 0, 0] * P6)
+    mu = 2 / P6 * (1 - model.velocity_of_force(np.array([[0, 0, 0], [2.0 - overlap, 0, 0]]), np.ones(2))[0, 1, 0, 0] *
+                   P6)
     for part, stable in ((0.95, True), (1.05, False)):
-        sim = simulation(Spheres([(0, 0, 0), (2.0 - overlap * 1.001, 0, 0)]), contacts(k, ALL), fix=False, box=[(-9.0, 9.0)] * 3, dt=part * limit / (k * mu),
+        sim = simulation(Spheres([(0, 0, 0), (2.0 - overlap * 1.001, 0, 0)]), contacts(k, ALL), fix=False,
+                         box=[(-9.0, 9.0)] * 3, dt=part * limit / (k * mu),
                          comm="comm_modify vel yes", before_pair="neighbor 1 bin\nneigh_modify delay 0")
         sim.commands(f"group one id 1\ngroup two id 2\nfix a one addforce {F} 0 0\nfix b two addforce {-F} 0 0\n"
                      f"{FIX} scheme {scheme}").run(300)
@@ -132,7 +137,8 @@ def test_contacts_limit_the_step_as_they_should(simulation, scheme, limit):
 
 
 def test_adapt_follows_the_fastest(simulation):
-    """The step is xmax over the largest speed, within its bounds, at most twice the last; the path is that of small steps."""
+    """The step is xmax over the largest speed, within its bounds, at most twice the last; the path is that of small
+    steps."""
     spheres = Spheres([(0, 0, 0), (2.6, 0, 1.2), (1.0, 3.5, -0.5)])
     sim = simulation(spheres, ALL, fix=False, box=[(-99.0, 99.0)] * 3, dt=1e-3)
     sim.commands(weight(spheres)).commands(f"{FIX} adapt 1 1e-4 0.5 0.05\nvariable t equal time")
@@ -149,22 +155,25 @@ def test_adapt_follows_the_fastest(simulation):
 
 @pytest.mark.parametrize("boundary, style, gap", [("p p p", "cut_off_distance inf", 2 * (np.hypot(1.2, 0.3) - 1)),
                                                   ("f f f", "cut_off_distance inf", 1.2),
-                                                  ("f s p", "cut_off_distance 3 taper wendland", 2 * (np.hypot(1.2, 0.3) - 1)),
+                                                  ("f s p", "cut_off_distance 3 taper wendland",
+                                                   2 * (np.hypot(1.2, 0.3) - 1)),
                                                   ("f p f", "cut_off_distance 1.1 taper wendland", 1.2)])
 @pytest.mark.parametrize("ranks", [1, 3])
 def test_smallest_gap_needs_no_ghosts(tmp_path, boundary, style, gap, ranks):
     """Across a periodic face and across ranks, and where the faces are none: no ghosts are asked for, or too few."""
     spheres = Spheres([(0, 0, -9.4), (1, 0, -0.8), (1, 0, 0.8), (0, 0.3, 9.4)], 0.5)
-    lines = input_lines(spheres, f"{style} visc 1", str(tmp_path / "data"), boundary, [(-10.0, 10.0)] * 3, fix=False, dt=1e-3)
+    lines = input_lines(spheres, f"{style} visc 1", str(tmp_path / "data"), boundary, [(-10.0, 10.0)] * 3, fix=False,
+                        dt=1e-3)
     lmp(tmp_path, lines + [FIX, "run 0", f'print "$(f_move[8]:%.15g)" file {tmp_path}/gap'], ranks)
     assert float((tmp_path / "gap").read_text()) == pytest.approx(gap, rel=1e-12)
 
 
 def test_smallest_gap_in_a_plane(tmp_path):
     """The third direction of a plane is periodic by name only."""
-    lines = input_lines(Spheres([(0, 0, 0), (1.4, 0, 0)], 0.5), "cut_off_distance inf visc 1", str(tmp_path / "data"), "f f p",
-                        [(-10.0, 10.0), (-10.0, 10.0), (-0.3, 0.3)], fix=False, dt=1e-3)
-    lmp(tmp_path, ["dimension 2"] + lines + ["fix plane all enforce2d", FIX, "run 0", f'print "$(f_move[8]:%.15g)" file {tmp_path}/gap'])
+    lines = input_lines(Spheres([(0, 0, 0), (1.4, 0, 0)], 0.5), "cut_off_distance inf visc 1", str(tmp_path / "data"),
+                        "f f p", [(-10.0, 10.0), (-10.0, 10.0), (-0.3, 0.3)], fix=False, dt=1e-3)
+    lmp(tmp_path, ["dimension 2"] + lines + ["fix plane all enforce2d", FIX, "run 0",
+                                             f'print "$(f_move[8]:%.15g)" file {tmp_path}/gap'])
     assert float((tmp_path / "gap").read_text()) == pytest.approx(0.8, rel=1e-12)
 
 
@@ -172,12 +181,14 @@ PLANE = dict(boundary="f f p", box=[(-20.0, 20.0), (-20.0, 20.0), (-0.5, 0.5)])
 
 
 @pytest.mark.parametrize("scheme", ["ab2", "midpoint"])
-@pytest.mark.parametrize("style, molecule", [("fluid_velocity 0.1 0 0.3", 0), ("rotation yes fluid_velocity 0.1 0 0.3", 0), ("multiblob 12", 0),
+@pytest.mark.parametrize("style, molecule", [("fluid_velocity 0.1 0 0.3", 0),
+                                             ("rotation yes fluid_velocity 0.1 0 0.3", 0), ("multiblob 12", 0),
                                              ("multiblob 12 rigid_clumps yes", [1, 1, 1, 0])])
 def test_nobody_leaves_a_plane(simulation, tmp_path, style, molecule, scheme):
-    """Nor turns but about its normal: neither a stream across it carries spheres off, nor shells of points that stand askew to it."""
-    lines = input_lines(Spheres([(0, 0, 0), (2, 0, 0), (2.3, 2.1, 0), (-2, -1.5, 0)], molecule=molecule), f"{ALL} {style}",
-                        str(tmp_path / "data"), fix=False, dt=0.05, **PLANE)
+    """Nor turns but about its normal: neither a stream across it carries spheres off, nor shells of points that stand
+    askew to it."""
+    lines = input_lines(Spheres([(0, 0, 0), (2, 0, 0), (2.3, 2.1, 0), (-2, -1.5, 0)], molecule=molecule),
+                        f"{ALL} {style}", str(tmp_path / "data"), fix=False, dt=0.05, **PLANE)
     sim = simulation().commands(["dimension 2"] + lines)
     sim.commands(["variable fx atom 9*sin(id)", "variable fy atom -8*cos(id)", "fix pull all addforce v_fx v_fy 0",
                   f"{FIX} scheme {scheme}"]).run(20)
@@ -187,8 +198,8 @@ def test_nobody_leaves_a_plane(simulation, tmp_path, style, molecule, scheme):
 
 def test_contacts_allow_a_step_that_is_told(tmp_path):
     spheres = Spheres([(0, 0, 0), (1.99, 0, 0)])
-    lines = input_lines(spheres, contacts(50.0, ALL), os.path.join(str(tmp_path), "spheres.data"), fix=False, box=[(-9.0, 9.0)] * 3, dt=0.3,
-                        comm="comm_modify vel yes")
+    lines = input_lines(spheres, contacts(50.0, ALL), os.path.join(str(tmp_path), "spheres.data"), fix=False,
+                        box=[(-9.0, 9.0)] * 3, dt=0.3, comm="comm_modify vel yes")
     out = lmp(tmp_path, lines + [FIX, "run 1"])
     limit = 0.39 * P6
     assert f"contacts and bonds of stiffness k allow time steps up to 0.39 6 pi eta a / k = {limit:.6g} / k" in out.log
@@ -197,16 +208,17 @@ def test_contacts_allow_a_step_that_is_told(tmp_path):
 
 @pytest.mark.parametrize("part, friction, warned", [(0.9, 0.0, False), (1.1, 0.0, True), (0.1, 0.5, True)])
 def test_springs_that_films_slow_allow_longer_steps(tmp_path, part, friction, warned):
-    """A cluster of twelve about one: overlaps fade in steps up to the limit with films of a gap of xi, 0.64/xi times the one without. Springs across
-    (here 2/7 as stiff) have the limit without."""
+    """A cluster of twelve about one: overlaps fade in steps up to the limit with films of a gap of xi, 0.64/xi times
+    the one without. Springs across (here 2/7 as stiff) have the limit without."""
     ways = [(p, q, 0) for p in (1, -1) for q in (1, -1)]
     x = 1.99 / 2**0.5 * np.array([(0, 0, 0)] + [np.roll(way, turn) for way in ways for turn in range(3)])
     limit = 0.39 * P6 * 64
     style = f"{ALL} rotation yes lubrication yes lubrication_gap 0.01"
-    lines = input_lines(Spheres(x), contacts(50.0, style, friction), os.path.join(str(tmp_path), "spheres.data"), fix=False, box=[(-19.0, 19.0)] * 3,
-                        dt=part * limit / 50, comm="comm_modify vel yes")
+    lines = input_lines(Spheres(x), contacts(50.0, style, friction), os.path.join(str(tmp_path), "spheres.data"),
+                        fix=False, box=[(-19.0, 19.0)] * 3, dt=part * limit / 50, comm="comm_modify vel yes")
     out = lmp(tmp_path, lines + [FIX, "thermo_style custom step f_move[8]", "thermo 12", "run 12"])
     assert f"with films between them, up to {limit:.6g} / k" in " ".join(out.log.split())
     assert ("is above" in out.log) == warned
-    gaps = [float(line.split()[1]) for line in out.log.splitlines() if line.split()[:1] in (["0"], ["12"]) and len(line.split()) == 2]
+    gaps = [float(line.split()[1]) for line in out.log.splitlines() if line.split()[:1] in (["0"], ["12"]) and
+            len(line.split()) == 2]
     assert gaps[0] == pytest.approx(-0.01) and (warned or abs(gaps[1]) < 0.003)

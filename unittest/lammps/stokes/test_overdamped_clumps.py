@@ -33,8 +33,8 @@ def test_doublet_and_sphere_fall_along_the_known_path(simulation, scheme, order)
     reference = np.vstack([c + DOUBLET @ R.T, [lone[k] for k in "xyz"]])
     errors = []
     for steps in (100, 200, 400):
-        sim = fall(simulation, doublet_and_sphere(), CLUMPS + " relative_tolerance 1e-8", f"scheme {scheme}", steps=steps,
-                   comm=COMM)
+        sim = fall(simulation, doublet_and_sphere(), CLUMPS + " relative_tolerance 1e-8", f"scheme {scheme}",
+                   steps=steps, comm=COMM)
         now = sim.x
         axis = (now[1] - now[0]) / 2
         errors.append((np.abs(now - reference).max(), np.abs(axis - R[:, 2]).max()))
@@ -59,8 +59,10 @@ def rigid_velocities(x, molecule, load, eta=1.0):
 
 def test_clumps_move_as_the_dense_solution_says(simulation):
     spheres = chains()
-    sim = simulation(spheres, CLUMPS + " relative_tolerance 1e-10", fix=False, box=[(-40.0, 60.0)] * 3, dt=0.01, comm=COMM)
-    sim.commands("variable fx atom sin(3*x)\nvariable fz atom -5-0.1*id\nfix pull all addforce v_fx 0 v_fz\n" + FIX).run(2)
+    sim = simulation(spheres, CLUMPS + " relative_tolerance 1e-10", fix=False, box=[(-40.0, 60.0)] * 3, dt=0.01,
+                     comm=COMM)
+    sim.commands("variable fx atom sin(3*x)\nvariable fz atom -5-0.1*id\nfix pull all addforce v_fx 0 v_fz\n" +
+                 FIX).run(2)
     load = np.hstack([sim.f, sim.atom("torque")])
     V, K = rigid_velocities(sim.x, spheres.molecule, load)
     assert np.abs(np.hstack([sim.v, sim.atom("omega")]).ravel() - K @ V).max() < 1e-8 * np.abs(V).max()
@@ -73,21 +75,22 @@ def test_clumps_move_as_the_dense_solution_says(simulation):
 def test_a_lone_clump_with_shells_does_not_care_whether_others_could_interact(simulation):
     ends = []
     for only in ("clumps_only yes", "cut_off_distance inf"):
-        sim = simulation(chains(1), f"{only} visc 1.3 rigid_clumps yes shell 42 fluid_velocity v_u 0 v_w", fix=False, box=[(-40.0, 60.0)] * 3, dt=0.5,
-                         comm=COMM, before_pair="variable u atom 0.3*z+0.1*x\nvariable w atom -0.1*z")
+        sim = simulation(chains(1), f"{only} visc 1.3 rigid_clumps yes shell 42 fluid_velocity v_u 0 v_w", fix=False,
+                         box=[(-40.0, 60.0)] * 3, dt=0.5, comm=COMM, before_pair="variable u atom 0.3*z+0.1*x\n"
+                         "variable w atom -0.1*z")
         sim.commands(f"fix pull all addforce 0.5 0 -1\n{FIX}").run(20)
         ends.append(np.hstack([sim.x, sim.v]))
     assert np.abs(ends[1] - ends[0]).max() < 1e-10
 
 
 def test_period_of_the_doublet_in_shear(simulation):
-    """Jeffery's orbit: the rate of turning is w1 cos^2 + w2 sin^2, so the period is 2 pi/sqrt(w1 w2), here that of shell 42:
-    15.61585 in examples/tumbling, with a Stokes number of 0.01."""
+    """Jeffery's orbit: the rate of turning is w1 cos^2 + w2 sin^2, so the period is 2 pi/sqrt(w1 w2), here that of
+    shell 42: 15.61585 in examples/tumbling, with a Stokes number of 0.01."""
     words = "clumps_only yes visc 1 rigid_clumps yes shell 42 fluid_velocity v_u 0 0"
 
     def chain_in_shear(axis, dt=0.01):
-        sim = simulation(Spheres(np.outer((-1, 1), axis), molecule=1), words, fix=False, box=[(-9.0, 9.0)] * 3, comm=COMM, dt=dt,
-                         before_pair="variable u atom z")
+        sim = simulation(Spheres(np.outer((-1, 1), axis), molecule=1), words, fix=False, box=[(-9.0, 9.0)] * 3,
+                         comm=COMM, dt=dt, before_pair="variable u atom z")
         return sim.commands(FIX)
 
     rates = [chain_in_shear(axis).run(0).atom("omega")[0, 1] for axis in ((0, 0, 1.0), (1.0, 0, 0))]
@@ -102,7 +105,8 @@ def test_period_of_the_doublet_in_shear(simulation):
 
 def test_shapes_stay_rigid(simulation):
     spheres = chains(2, 3, side=6.0)
-    sim = fall(simulation, spheres, CLUMPS.replace("cut_off_distance inf", "clumps_only yes") + " fluid_velocity 0 0 0.5", t=100.0,
+    sim = fall(simulation, spheres, CLUMPS.replace("cut_off_distance inf", "clumps_only yes") +
+               " fluid_velocity 0 0 0.5", t=100.0,
                steps=100000, lines="variable f atom sin(step*0.01+id)\nfix pull all addforce v_f 0 -9.4", comm=COMM)
     for m in (1, 2):
         x = sim.x[spheres.molecule == m]
@@ -118,9 +122,10 @@ def test_periodic_border_is_none_for_a_clump(simulation, m):
         spheres = chains(1, m, side=1e-3)
         spheres.x = spheres.x + shift + 0.01
         inside = Spheres((spheres.x + 10) % 20 - 10 if boundary[0] == "p" else spheres.x, molecule=spheres.molecule)
-        sim = simulation(inside, words, fix=False, box=[(-10.0, 10.0)] * 3 if boundary[0] == "p" else [(-150.0, 150.0)] * 3, dt=2.0,
-                         boundary=boundary, comm=COMM)
-        sim.commands(f"fix pull all addforce 0.9 0.4 -2\nvariable fx atom 0.1*id\nfix also all addforce v_fx 0 0\n{FIX}").run(150)
+        sim = simulation(inside, words, fix=False, box=[(-10.0, 10.0)] * 3 if boundary[0] == "p"
+                         else [(-150.0, 150.0)] * 3, dt=2.0, boundary=boundary, comm=COMM)
+        sim.commands("fix pull all addforce 0.9 0.4 -2\nvariable fx atom 0.1*id\n"
+                     f"fix also all addforce v_fx 0 0\n{FIX}").run(150)
         ends.append((sim.x - inside.x, sim.v))
     for moved, v in ends[:2]:
         difference = moved - ends[2][0]
@@ -131,9 +136,12 @@ def test_periodic_border_is_none_for_a_clump(simulation, m):
 
 @pytest.mark.parametrize("change", ["reset", "delete"])
 def test_clumps_are_known_by_their_atoms_of_now(simulation, change):
-    """Commands between two runs give other IDs: to the spheres of a clump each other's, or those of a sphere that is gone."""
-    spheres = Spheres([(0, 0, 0), (-1.5, 0, 0), (0, 6, 0), (2, 6, 0), (2, 8, 0), (30, 0, 0)], [1, 0.5, 1, 1, 1, 1], molecule=[1, 1, 2, 2, 2, 0])
-    words, comm = "cut_off_distance inf visc 1.3 rigid_clumps yes rotation yes relative_tolerance 1e-9", "comm_modify cutoff 9"
+    """Commands between two runs give other IDs: to the spheres of a clump each other's, or those of a sphere that is
+    gone."""
+    spheres = Spheres([(0, 0, 0), (-1.5, 0, 0), (0, 6, 0), (2, 6, 0), (2, 8, 0), (30, 0, 0)], [1, 0.5, 1, 1, 1, 1],
+                      molecule=[1, 1, 2, 2, 2, 0])
+    words = "cut_off_distance inf visc 1.3 rigid_clumps yes rotation yes relative_tolerance 1e-9"
+    comm = "comm_modify cutoff 9"
     sim = simulation(spheres, words, fix=False, box=[(-60, 60)] * 3, comm=comm)
     sim.commands("fix weight all addforce 0.1 0 -1").commands(FIX).run(0)
     if change == "delete":      # a sphere of molecule 2 as well
@@ -148,16 +156,18 @@ def test_clumps_are_known_by_their_atoms_of_now(simulation, change):
 
 @pytest.mark.parametrize("boundary, flow", [("f f f", "v_u 0.2 0"), ("p p p", "0.1 0.2 0 far_field_tolerance 1e-12")])
 def test_forces_for_given_velocities_are_the_inverse(simulation, boundary, flow):
-    """rigid_clumps yes, clumps_only no: what moves the clumps so without inertia is what the pair style finds for that motion; in
-    open space and with all periodic images."""
+    """rigid_clumps yes, clumps_only no: what moves the clumps so without inertia is what the pair style finds for that
+    motion; in open space and with all periodic images."""
     words = f"{CLUMPS} relative_tolerance 1e-10 fluid_velocity {flow} max_iter 500".replace("rotation yes", "shell 12")
     spheres = mixed()
-    sim = simulation(spheres, words, fix=False, box=[(-40.0, 60.0) if boundary == "f f f" else (-12.0, 22.0)] * 3, dt=0.01, comm=COMM,
-                     before_pair="variable u atom 0.3*z+0.1*x", boundary=boundary)
-    sim.commands(f"variable fx atom sin(3*x)\nvariable fz atom -5-0.1*id\nfix pull all addforce v_fx 0 v_fz\n{FIX}").run(2)
+    sim = simulation(spheres, words, fix=False, box=[(-40.0, 60.0) if boundary == "f f f" else (-12.0, 22.0)] * 3,
+                     dt=0.01, comm=COMM, before_pair="variable u atom 0.3*z+0.1*x", boundary=boundary)
+    sim.commands(
+        f"variable fx atom sin(3*x)\nvariable fz atom -5-0.1*id\nfix pull all addforce v_fx 0 v_fz\n{FIX}").run(2)
     load, before = sim.f, sim.fix_rows("move")[:, 3:9]
     for algorithm in ("2", "2 precondition clump", "1"):
-        sim.commands(f"unfix move\nfix drag all stokes_dynamics\npair_style stokes_dynamics {words} algorithm {algorithm}\n"
+        sim.commands("unfix move\nfix drag all stokes_dynamics\n"
+                     f"pair_style stokes_dynamics {words} algorithm {algorithm}\n"
                      "pair_coeff * *").run(0)
         rows = sim.fix_rows()
         forces = np.hstack([rows[:, :3], rows[:, 6:9]])

@@ -21,7 +21,8 @@ def test_who_writes_to_v_does_not_steer(simulation, other):
 def test_other_atoms_may_be_integrated_otherwise(simulation):
     sim = simulation(THREE, "cut_off_distance inf visc 1 group slow", fix=False, box=[(-20.0, 20.0)] * 3, dt=0.01,
                      before_pair="group slow id 1 2\ngroup fast id 3\nvelocity fast set 1 0 0")
-    sim.commands("fix other fast nve/sphere\nfix move slow stokes_dynamics/overdamped\nfix pull slow addforce 0 0 -1").run(10)
+    sim.commands(
+        "fix other fast nve/sphere\nfix move slow stokes_dynamics/overdamped\nfix pull slow addforce 0 0 -1").run(10)
     assert sim.v[2] == pytest.approx((1, 0, 0)) and sim.v[0, 2] < -0.05
 
 
@@ -35,19 +36,28 @@ def test_other_atoms_may_be_integrated_otherwise(simulation):
     ("fix other all langevin 1 1 1 4711", "fix other of style langevin adds a drag to spheres"),
     ("fix other all stokes_dynamics", "fix other of style stokes_dynamics cannot apply"),
     ("fix other all stokes_dynamics apply yes", "fix other of style stokes_dynamics cannot apply"),
-    ("fix other all stokes_dynamics/overdamped", "fix other of style stokes_dynamics/overdamped integrates spheres that fix"),
-    ("pair_style stokes_dynamics cut_off_distance inf visc 1 add_force yes\npair_coeff * *", "keyword add_force .* must be no"),
-    ("pair_style stokes_dynamics cut_off_distance inf visc 1 update_every 3\npair_coeff * *", "update_every .* must be 1, not 3"),
-    ("pair_style stokes_dynamics clumps_only yes visc 1 rigid_clumps auto rotation yes\npair_coeff * *", "yes or no, not auto"),
-    ("pair_style stokes_dynamics clumps_only yes visc 1 rigid_clumps yes\npair_coeff * *", "requires rotation yes or a shell"),
-    ("pair_style stokes_dynamics cut_off_distance 8 visc 1\npair_coeff * *", "cut_off_distance: '8' of pair_style .* leaves out flows"),
+    ("fix other all stokes_dynamics/overdamped",
+     "fix other of style stokes_dynamics/overdamped integrates spheres that fix"),
+    ("pair_style stokes_dynamics cut_off_distance inf visc 1 add_force yes\npair_coeff * *",
+     "keyword add_force .* must be no"),
+    ("pair_style stokes_dynamics cut_off_distance inf visc 1 update_every 3\npair_coeff * *",
+     "update_every .* must be 1, not 3"),
+    ("pair_style stokes_dynamics clumps_only yes visc 1 rigid_clumps auto rotation yes\npair_coeff * *",
+     "yes or no, not auto"),
+    ("pair_style stokes_dynamics clumps_only yes visc 1 rigid_clumps yes\npair_coeff * *",
+     "requires rotation yes or a shell"),
+    ("pair_style stokes_dynamics cut_off_distance 8 visc 1\npair_coeff * *",
+     "cut_off_distance: '8' of pair_style .* leaves out flows"),
     ("pair_style none", "there is no pair_style stokes_dynamics"),
     ("run_style respa 2 2", "respa"),
     ("group some id 1\npair_style stokes_dynamics cut_off_distance inf visc 1 group some\npair_coeff * *",
      "atom 2 is selected either by the group of this fix or by pair_style stokes_dynamics"),
-    ("comm_modify vel yes\npair_style hybrid/overlay gran/hooke/history 10 NULL 0.3 NULL 0 0 stokes_dynamics cut_off_distance inf visc 1\n"
-     "pair_coeff * * gran/hooke/history\npair_coeff * * stokes_dynamics", "pair_style gran/hooke/history damps its contacts .gamma 0.3"),
-    ("comm_modify vel yes\npair_style hybrid/overlay gran/hooke 10 NULL 0.3 0.1 0 1 stokes_dynamics cut_off_distance inf visc 1\n"
+    ("comm_modify vel yes\npair_style hybrid/overlay gran/hooke/history 10 NULL 0.3 NULL 0 0 stokes_dynamics "
+     "cut_off_distance inf visc 1\n"
+     "pair_coeff * * gran/hooke/history\npair_coeff * * stokes_dynamics",
+     "pair_style gran/hooke/history damps its contacts .gamma 0.3"),
+    ("comm_modify vel yes\npair_style hybrid/overlay gran/hooke 10 NULL 0.3 0.1 0 1 stokes_dynamics "
+     "cut_off_distance inf visc 1\n"
      "pair_coeff * * gran/hooke\npair_coeff * * stokes_dynamics", "pair_style gran/hooke damps its contacts"),
 ])
 def test_what_does_not_go_with_it_is_named(simulation, lines, message):
@@ -72,7 +82,8 @@ def test_it_cannot_be_minimised(simulation):
     ("adapt 1 2 1 3", "keyword adapt: tmin '2' must not be above tmax '1'"),
     ("adapt 1 2 3", "keyword adapt"),
     ("adapt 1 1 2 nan", "keyword adapt: 'nan'"),
-    ("rigid yes", "unknown keyword 'rigid'; those that there are: scheme, adapt, held, pin, spin, squirm, torque, temperature, noise_tolerance"),
+    ("rigid yes", "unknown keyword 'rigid'; those that there are: scheme, adapt, held, pin, spin, squirm, torque, "
+                  "temperature, noise_tolerance"),
     ("visc 1", "unknown keyword 'visc': it is a keyword of pair_style stokes_dynamics"),
     ("scheme ab2 scheme euler", "keyword scheme"),
 ])
@@ -84,12 +95,13 @@ def test_bad_words(simulation, words, message):
 
 @pytest.mark.parametrize("k, told", [(11000, True), (90000, True), (2000, False)])
 def test_steps_that_are_too_long_are_told_before_an_atom_is_lost(simulation, tmp_path, k, told):
-    """A sphere at a spring k: in a step of dt k/(6 pi eta a) = 1.17 its displacement grows by 1.2 in every step, with 9.5 by 14; it
-    must be told while the sphere is still in the box. With 0.21 it comes to rest."""
+    """A sphere at a spring k: in a step of dt k/(6 pi eta a) = 1.17 its displacement grows by 1.2 in every step, with
+    9.5 by 14; it must be told while the sphere is still in the box. With 0.21 it comes to rest."""
     log = tmp_path / "log"
     sim = simulation(log=log).commands([
-        "atom_style sphere", "boundary f f f", "plugin load stokesdynplugin.so", "region box block 0 12 0 12 0 12", "create_box 1 box",
-        "create_atoms 1 single 6 6 6", "set group all diameter 1", f"pair_style stokes_dynamics {ALL}", "pair_coeff * *", "timestep 0.001",
+        "atom_style sphere", "boundary f f f", "plugin load stokesdynplugin.so", "region box block 0 12 0 12 0 12",
+        "create_box 1 box", "create_atoms 1 single 6 6 6", "set group all diameter 1",
+        f"pair_style stokes_dynamics {ALL}", "pair_coeff * *", "timestep 0.001",
         FIX, f"fix spring all spring/self {k}", "run 0", "displace_atoms all move 1e-6 0 0", "thermo 1"])
     try:
         sim.run(100)
@@ -100,11 +112,14 @@ def test_steps_that_are_too_long_are_told_before_an_atom_is_lost(simulation, tmp
 
 
 def test_springs_with_a_largest_force_do_not_hide_long_steps(simulation, tmp_path):
-    """A force of constant size towards x = 6 throws a sphere from side to side: the change of its velocity does not grow."""
+    """A force of constant size towards x = 6 throws a sphere from side to side: the change of its velocity does not
+    grow."""
     log = tmp_path / "log"
     sim = simulation(log=log).commands([
-        "atom_style sphere", "boundary f f f", "plugin load stokesdynplugin.so", "region box block 0 12 0 12 0 12", "create_box 1 box",
-        "create_atoms 1 single 6 6 6", "set group all diameter 1", f"pair_style stokes_dynamics {ALL}", "pair_coeff * *", "timestep 0.001",
-        FIX, "variable f atom 4000*(x<6)-4000*(x>6)", "fix spring all addforce v_f 0 0", "displace_atoms all move 0.01 0 0"])
+        "atom_style sphere", "boundary f f f", "plugin load stokesdynplugin.so", "region box block 0 12 0 12 0 12",
+        "create_box 1 box", "create_atoms 1 single 6 6 6", "set group all diameter 1",
+        f"pair_style stokes_dynamics {ALL}", "pair_coeff * *", "timestep 0.001",
+        FIX, "variable f atom 4000*(x<6)-4000*(x>6)", "fix spring all addforce v_f 0 0",
+        "displace_atoms all move 0.01 0 0"])
     sim.run(60).command("log none")
     assert "or stays large" in log.read_text()

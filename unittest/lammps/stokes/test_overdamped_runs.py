@@ -1,4 +1,5 @@
-"""fix stokes_dynamics/overdamped: one run in whatever pieces and on however many ranks, and what changes between runs."""
+"""fix stokes_dynamics/overdamped: one run in whatever pieces and on however many ranks, and what changes between
+runs."""
 import os
 
 import numpy as np
@@ -8,22 +9,24 @@ from host import allowed
 from system import Spheres, dump_lines, from_restart, input_lines, lmp, lmp_in_turn, read_dump
 from without_inertia import ALL, FIX, P6, THREE, contacts, mixed, weight
 
-WAYS = {"spheres": "cut_off_distance inf visc 1.1 rotation yes", "spheres by list": "cut_off_distance 9 taper wendland visc 1.1",
+WAYS = {"spheres": "cut_off_distance inf visc 1.1 rotation yes",
+        "spheres by list": "cut_off_distance 9 taper wendland visc 1.1",
         "clumps": "cut_off_distance inf visc 1.1 rotation yes rigid_clumps yes",
         "clumps with shells": "cut_off_distance inf visc 1.1 rigid_clumps yes shell 12 fluid_velocity v_u 0 0",
         "clumps by list": "cut_off_distance 9 taper wendland visc 1.1 rotation yes rigid_clumps yes",
         "close spheres": "cut_off_distance inf visc 1.1 rotation yes lubrication yes relative_tolerance 1e-12",
-        "close clumps": "cut_off_distance inf visc 1.1 rigid_clumps yes shell 12 fluid_velocity v_u 0 0 lubrication yes "
-                        "lubrication_gap 1e-2 relative_tolerance 1e-12",
-        "shells of points": "cut_off_distance inf visc 1.1 multiblob 12 rigid_clumps yes fluid_velocity v_u 0 0 lubrication yes "
-                            "relative_tolerance 1e-12",
+        "close clumps": "cut_off_distance inf visc 1.1 rigid_clumps yes shell 12 fluid_velocity v_u 0 0 "
+                        "lubrication yes lubrication_gap 1e-2 relative_tolerance 1e-12",
+        "shells of points": "cut_off_distance inf visc 1.1 multiblob 12 rigid_clumps yes fluid_velocity v_u 0 0 "
+                            "lubrication yes relative_tolerance 1e-12",
         "clumps apart": "clumps_only yes visc 1.1 rotation yes rigid_clumps yes shell 12 fluid_velocity v_u 0 0"}
 
 
 def script(folder, way, runs, newton="on", options="", box=(-40.0, 40.0), boundary="p p p"):
     boundary = "f f f" if "inf" in WAYS[way] else boundary
-    lines = input_lines(mixed(), contacts(20.0, WAYS[way]), os.path.join(str(folder), "spheres.data"), fix=False, box=[box] * 3, dt=0.3,
-                        boundary=boundary, newton=newton, comm="comm_modify vel yes cutoff 9\nneigh_modify exclude molecule/intra all",
+    lines = input_lines(mixed(), contacts(20.0, WAYS[way]), os.path.join(str(folder), "spheres.data"), fix=False,
+                        box=[box] * 3, dt=0.3, boundary=boundary, newton=newton, comm="comm_modify vel yes cutoff 9\n"
+                        "neigh_modify exclude molecule/intra all",
                         before_pair="variable u atom 0.05*z")
     # a force on every sphere of its own, so that bodies turn
     return lines + ["variable fx atom 0.3*sin(id)", "fix pull all addforce v_fx 0 -6", f"{FIX} {options}"] + runs
@@ -54,14 +57,16 @@ def test_ranks_and_newton_do_not_matter(tmp_path, way):
     assert max(difference(f, frames[0]) for f in frames[1:]) < 1e-10
 
 
-@pytest.mark.parametrize("way, options, ranks", [(way, "", 2) for way in WAYS] + [("clumps with shells", "adapt 3 1e-3 0.5 0.05", 1),
-                                                                                   ("spheres", "scheme euler", 1)])
+@pytest.mark.parametrize("way, options, ranks",
+                         [(way, "", 2) for way in WAYS] + [("clumps with shells", "adapt 3 1e-3 0.5 0.05", 1),
+                                                            ("spheres", "scheme euler", 1)])
 def test_a_run_in_pieces_is_the_run_in_one(tmp_path, way, options, ranks):
     """In two runs, and in two with a restart file in between"""
     def once(runs):
         return script(tmp_path, way, runs, options=options)
 
-    # contacts of LAMMPS 29Sep2021 that begin a second time (two runs, write_restart) want memory that nobody has used: first in a start
+    # contacts of LAMMPS 29Sep2021 that begin a second time (two runs, write_restart) want memory that nobody has used:
+    # first in a start
     lmp_in_turn(tmp_path, [once(["run 37", "write_restart half.restart"]), once(end() + ["run 100"]),
                            from_restart(once(end("restarted.dump") + ["run 63"]))], ranks)
     lmp(tmp_path, once(end("two.dump") + ["run 37", "run 63"]), ranks)
@@ -106,7 +111,8 @@ def test_a_sphere_moved_by_hand_starts_anew(simulation):
 
 
 @pytest.mark.parametrize("change, after", [("unfix weight", 0.0), ("unfix weight\nfix weight all addforce 0 0 2", 2.0),
-                                           ("pair_style stokes_dynamics cut_off_distance inf visc 4\npair_coeff * *", -0.25),
+                                           ("pair_style stokes_dynamics cut_off_distance inf visc 4\npair_coeff * *",
+                                            -0.25),
                                            ("variable u equal 0.5", -0.5), ("variable u equal 0.0", -1.0)])
 def test_a_force_that_is_taken_away_leaves_nothing(simulation, change, after):
     """Between two runs: the first step goes by the velocity of now alone. Nothing has changed in the last case."""
@@ -138,15 +144,17 @@ def test_the_step_after_atoms_have_gone_is_eulers(simulation, way):
 
 
 def test_a_restarted_step_of_adapt_is_told_to_others(simulation, tmp_path):
-    """Whoever keeps the length of a step (another integration here, springs of friction elsewhere) has that of the run, not that which
-    a script names after read_restart."""
+    """Whoever keeps the length of a step (another integration here, springs of friction elsewhere) has that of the run,
+    not that which a script names after read_restart."""
     words = "pair_style stokes_dynamics cut_off_distance inf visc 1 group slow\npair_coeff * *"
     lines = input_lines(THREE, words.splitlines(), str(tmp_path / "data"), fix=False, box=[(-40.0, 40.0)] * 3, dt=0.1,
                         before_pair="group slow id 1 2\ngroup fast id 3\nvelocity fast set 1 0 0")
-    rest = ["fix pull slow addforce 0 0 -1", "fix other fast nve/sphere", "fix move slow stokes_dynamics/overdamped adapt 5 1e-3 0.1 10"]
+    rest = ["fix pull slow addforce 0 0 -1", "fix other fast nve/sphere",
+            "fix move slow stokes_dynamics/overdamped adapt 5 1e-3 0.1 10"]
     x = simulation().commands(lines + rest).run(18).x
     simulation().commands(lines + rest + ["run 12", f"write_restart {tmp_path}/half"])
-    again = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/half", *words.splitlines()] + rest)
+    again = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/half",
+                                   *words.splitlines()] + rest)
     assert np.abs(again.command("timestep 0.01") or again.run(6).x - x).max() < 1e-12
 
 

@@ -36,14 +36,16 @@ def style(mode, n, solver, add_force="no"):
 
 
 def rest(kind):
-    """What a restart file does not hold. Rigid bodies come last: when a run starts they see the forces of the fixes before."""
+    """What a restart file does not hold. Rigid bodies come last: when a run starts they see the forces of the fixes
+    before."""
     return ["fix drag all stokes_dynamics", "fix pull all gravity 1.5 vector 0.3 0 -1", INTEGRATORS[kind],
             "thermo_style custom step"]
 
 
 def begin(kind, words, data, newton="on"):
-    return input_lines(scene(kind), words, data, boundary="f f f", box=BOX, fix=False, dt=0.01, comm="comm_modify cutoff 16",
-                       before_pair="neigh_modify every 1 delay 0", newton=newton) + rest(kind)
+    return input_lines(scene(kind), words, data, boundary="f f f", box=BOX, fix=False, dt=0.01,
+                       comm="comm_modify cutoff 16", before_pair="neigh_modify every 1 delay 0",
+                       newton=newton) + rest(kind)
 
 
 def proceed(kind, restart, newton="on"):
@@ -63,7 +65,8 @@ def unbroken(tmp_path_factory):
     def get(kind, words):
         if (kind, words) not in known:
             folder = tmp_path_factory.mktemp("unbroken")
-            lines = begin(kind, words, folder / "data") + dump_lines(folder / "dump", every=100, columns=COLUMNS) + ["run 100"]
+            lines = begin(kind, words, folder / "data") + dump_lines(folder / "dump", every=100,
+                                                                     columns=COLUMNS) + ["run 100"]
             lmp(folder, lines)
             known[kind, words] = read_dump(folder / "dump")[-1][1]
         return known[kind, words]
@@ -113,11 +116,14 @@ BETWEEN = {"pushed": "velocity all set 3 0 0", "displaced": "displace_atoms all 
 @pytest.mark.parametrize("between", BETWEEN)
 @pytest.mark.parametrize("inertia", [True, False])
 def test_what_has_changed_since_the_run_is_seen_in_the_file_too(simulation, tmp_path, inertia, between):
-    """Forces, v' and velocities from before the change are not those of the run that begins behind it, in the script or from the file."""
-    move = ["fix drag all stokes_dynamics", INTEGRATORS["free"]] if inertia else ["fix move all stokes_dynamics/overdamped"]
-    rows, proceed = "f_drag[1]" if inertia else "f_move[1]", ["fix pull all gravity 1.5 vector 0.3 0 -1", *move, "timestep 0.01"]
-    begin = input_lines(scene("free"), "cut_off_distance inf visc 1.3" + " update_every 7" * inertia, tmp_path / "data", boundary="p p p",
-                        box=BOX, fix=False)
+    """Forces, v' and velocities from before the change are not those of the run that begins behind it, in the script or
+    from the file."""
+    drag = ["fix drag all stokes_dynamics", INTEGRATORS["free"]]
+    move = drag if inertia else ["fix move all stokes_dynamics/overdamped"]
+    rows = "f_drag[1]" if inertia else "f_move[1]"
+    proceed = ["fix pull all gravity 1.5 vector 0.3 0 -1", *move, "timestep 0.01"]
+    begin = input_lines(scene("free"), "cut_off_distance inf visc 1.3" + " update_every 7" * inertia, tmp_path / "data",
+                        boundary="p p p", box=BOX, fix=False)
 
     def one_step(sim):
         columns = f"x y z vx vy vz {rows}"
@@ -129,26 +135,31 @@ def test_what_has_changed_since_the_run_is_seen_in_the_file_too(simulation, tmp_
 
     here = one_step(changed())
     changed().command(f"write_restart {tmp_path}/mid")
-    there = one_step(simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", *proceed]))
+    there = one_step(simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid",
+                                            *proceed]))
     assert np.abs(there - here).max() < LIMIT
 
 
 @pytest.mark.parametrize("restart", [False, True])
 @pytest.mark.parametrize("warm", ["no", "yes"])
 def test_a_run_goes_on_with_algorithm_2_though_algorithm_1_would_converge_by_now(simulation, tmp_path, warm, restart):
-    """Three touching spheres, where it diverges, come apart. A loose tolerance shows which algorithm the later forces are of."""
+    """Three touching spheres, where it diverges, come apart. A loose tolerance shows which algorithm the later forces
+    are of."""
     apart = Spheres(chain(3, 2 * A).x, A, [(0, 0, -0.5), (0.2, 0, 0.4), (0, 0, 1.3)])
-    lines = input_lines(apart, f"cut_off_distance inf visc {ETA} relative_tolerance 0.05 warm_start {warm}", tmp_path / "data", box=BOX,
-                        fix=False, dt=0.1) + ["fix drag all stokes_dynamics apply no", "fix move all nve"]
+    lines = input_lines(apart, f"cut_off_distance inf visc {ETA} relative_tolerance 0.05 warm_start {warm}",
+                        tmp_path / "data", box=BOX, fix=False, dt=0.1) + ["fix drag all stokes_dynamics apply no",
+                                                                          "fix move all nve"]
     whole = last(simulation().commands(lines).run(40))
     sim = simulation().commands(lines).run(20)
     if restart:
         sim.command(f"write_restart {tmp_path}/mid")
-        sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", "timestep 0.1"] + lines[-2:])
+        sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid", "timestep 0.1"] +
+                                    lines[-2:])
     assert np.abs(last(sim.run(20)) - whole).max() < LIMIT
     other = simulation().commands([line.replace("relative", "algorithm 2 relative") for line in lines]).run(40)
     assert np.abs(last(other)[:, 6:] - whole[:, 6:]).max() < LIMIT
-    first = simulation(Spheres(whole[:, :3], A, whole[:, 3:6]), f"cut_off_distance inf visc {ETA} relative_tolerance 0.05").run()
+    first = simulation(Spheres(whole[:, :3], A, whole[:, 3:6]),
+                       f"cut_off_distance inf visc {ETA} relative_tolerance 0.05").run()
     assert first.iterations > 0 and np.abs(first.drag - whole[:, 6:9]).max() > 1e3 * LIMIT
 
 
@@ -165,14 +176,15 @@ def test_force_inside_the_pair_style_continues(simulation, tmp_path):
 def test_restart_on_another_number_of_ranks_continues(unbroken, tmp_path, kind, mode, write, read):
     words = style(mode, 7, "exact")
     lmp(tmp_path, begin(kind, words, tmp_path / "data") + ["run 50", f"write_restart {tmp_path}/mid"], ranks=write)
-    lmp(tmp_path, proceed(kind, tmp_path / "mid") + dump_lines(tmp_path / "dump", every=100, columns=COLUMNS) + ["run 50"],
+    lmp(tmp_path, proceed(kind, tmp_path / "mid") + dump_lines(tmp_path / "dump", every=100, columns=COLUMNS) +
+        ["run 50"],
         ranks=read)
     assert np.abs(read_dump(tmp_path / "dump")[-1][1] - unbroken(kind, words)).max() < LIMIT
 
 
 def test_restart_within_hybrid_overlay_continues(simulation, tmp_path):
-    """Contacts without damping or friction: those follow the velocity, and LAMMPS does not continue them exactly. LAMMPS
-    wants the pair_coeff lines of a hybrid style again."""
+    """Contacts without damping or friction: those follow the velocity, and LAMMPS does not continue them exactly.
+    LAMMPS wants the pair_coeff lines of a hybrid style again."""
     gran = "gran/hooke 500 NULL 0 NULL 0 0"
     coefficients = ["pair_coeff * * gran/hooke", "pair_coeff * * stokes_dynamics"]
     hybrid = [f"pair_style hybrid/overlay {gran} stokes_dynamics {style('all', 7, 'exact')}"] + coefficients
@@ -187,8 +199,8 @@ def test_restart_within_hybrid_overlay_continues(simulation, tmp_path):
 
 
 def test_restart_keeps_every_keyword(simulation, tmp_path):
-    words = f"cut_off_distance 9.5 visc {ETA} update_every 3 region part group some relative_tolerance 1e-9 max_iter 77 " \
-            "algorithm 2 fluid_velocity 0.1 v_u 0.3 tensor oseen"
+    words = (f"cut_off_distance 9.5 visc {ETA} update_every 3 region part group some relative_tolerance 1e-9 "
+             "max_iter 77 algorithm 2 fluid_velocity 0.1 v_u 0.3 tensor oseen")
     extra = ["region part block INF INF INF INF INF 1.5", "variable u equal 0.01*step"]
     spheres = Spheres(chain(5, 3.0).x, A, (0.1, 0.2, 0.3))
     options = dict(boundary="f f f", box=BOX, fix=False)
@@ -203,7 +215,8 @@ def test_restart_keeps_every_keyword(simulation, tmp_path):
 
 def test_restart_keeps_the_viscosity_that_fix_adapt_has_set(simulation, tmp_path):
     sim = simulation().commands(begin("free", style("all", 1, "exact"), tmp_path / "data"))
-    sim.commands(["variable eta equal 1.3+0.02*step", "fix vary all adapt 1 pair stokes_dynamics visc * * v_eta"]).run(20)
+    sim.commands(["variable eta equal 1.3+0.02*step", "fix vary all adapt 1 pair stokes_dynamics visc * * v_eta"]).run(
+        20)
     sim.command(f"write_restart {tmp_path}/mid")
     before = sim.x, sim.v
     sim = simulation().commands(proceed("free", tmp_path / "mid"))
@@ -231,7 +244,8 @@ def test_same_pair_style_line_after_the_restart_continues(simulation, unbroken, 
     assert np.abs(last(sim) - unbroken("free", words)).max() < LIMIT
 
 
-@pytest.mark.parametrize("changed", ["cut_off_distance inf visc 2.6 algorithm 2", "clumps_only yes visc 1.3 algorithm 2",
+@pytest.mark.parametrize("changed", ["cut_off_distance inf visc 2.6 algorithm 2",
+                                     "clumps_only yes visc 1.3 algorithm 2",
                                      "cut_off_distance 0.8 visc 1.3 algorithm 2",
                                      "cut_off_distance inf visc 1.3 algorithm 2 group some"])
 def test_other_pair_style_line_after_the_restart_is_in_the_first_force(simulation, tmp_path, changed):
@@ -248,7 +262,8 @@ def test_other_pair_style_line_after_the_restart_is_in_the_first_force(simulatio
 def test_restart_without_the_plugin_is_refused_by_lammps(simulation, tmp_path):
     simulation().commands(begin("free", style("all", 1, "exact"),
                                 tmp_path / "data")).run(1).command(f"write_restart {tmp_path}/mid")
-    ended = lmp(tmp_path, f"read_restart {tmp_path}/mid", succeed=False)      # newer LAMMPS may load it by itself in this process
+    # newer LAMMPS may load it by itself in this process
+    ended = lmp(tmp_path, f"read_restart {tmp_path}/mid", succeed=False)
     assert ended.code != 0 and "stokes_dynamics" in ended.text
 
 
@@ -263,7 +278,7 @@ def test_write_data_and_read_data(simulation, tmp_path):
     assert largest_difference(sim.drag, expected) < 1e-9
 
 
-# --- files of another version ----------------------------------------------------------------------------------------------
+# --- files of another version -----------------------------------------------------------------------------------------
 
 VERSION = (pathlib.Path(__file__).resolve().parents[3] / "PKG-STOKESDYN" / "VERSION").read_bytes().strip()
 
@@ -280,7 +295,8 @@ def changed_restart(tmp_path, old, new):
 
 
 def test_memory_of_another_version_is_warned_of_once_and_the_run_begins_afresh(tmp_path):
-    then = changed_restart(tmp_path, b"stokesdyn 1 STOKES_DYNAMICS/STATE " + VERSION, b"stokesdyn 7 STOKES_DYNAMICS/STATE 9" + VERSION[1:])
+    then = changed_restart(tmp_path, b"stokesdyn 1 STOKES_DYNAMICS/STATE " + VERSION,
+                           b"stokesdyn 7 STOKES_DYNAMICS/STATE 9" + VERSION[1:])
     lines = proceed("free", tmp_path / "restart") + ["fix none all ave/time 1 1 1 f_drag[6]"]
     ended = lmp(tmp_path, lines + dump_lines(tmp_path / "again", columns=COLUMNS) + ["run 0"])
     said = " ".join(ended.log.split())
@@ -308,7 +324,8 @@ def test_words_of_another_version_are_an_error_with_a_way_out(tmp_path):
     (tmp_path / "restart").write_bytes(change_format(tmp_path, 1)[1])
     ended = lmp(tmp_path, proceed("free", tmp_path / "restart"), succeed=False)
     said = " ".join(ended.text.split())
-    assert f"written by another version of the plugin, {VERSION.decode()}, in format 4; this is version {VERSION.decode()}" in said
+    version = VERSION.decode()
+    assert f"written by another version of the plugin, {version}, in format 4; this is version {version}" in said
     assert "write_data" in said
 
 
@@ -322,7 +339,8 @@ def test_files_from_before_the_first_version_are_read(tmp_path):
     assert content.count(head + b" " + line) == 1
     size = content.index(head) - 4
     shorter = int.from_bytes(content[size:size + 4], "little") - len(line)
-    content = content[:size] + shorter.to_bytes(4, "little") + content[size + 4:].replace(head + b" " + line, head + b"\n")
+    content = content[:size] + shorter.to_bytes(4,
+                                                "little") + content[size + 4:].replace(head + b" " + line, head + b"\n")
     (tmp_path / "older").write_bytes(content)
     for name in ("restart", "older"):
         dump = dump_lines(tmp_path / f"{name}.dump", columns=COLUMNS)

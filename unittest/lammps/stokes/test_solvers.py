@@ -32,7 +32,8 @@ def cube(n, v):
 @pytest.mark.parametrize("k", [1, 2, 3, 4])
 @pytest.mark.parametrize("reach", ["inf", "10"])
 def test_substitution_follows_the_analytic_trace(simulation, k, reach):
-    sim = simulation(touching_chain(2, ALONG), f"cut_off_distance {reach} visc {ETA} max_iter {k} relative_tolerance 1e-15").run()
+    sim = simulation(touching_chain(2, ALONG),
+                     f"cut_off_distance {reach} visc {ETA} max_iter {k} relative_tolerance 1e-15").run()
     expected = -(1 - (-0.625)**(k + 1)) / 1.625
     assert np.abs(sim.drag[:, 2] / (STOKES * ALONG[2]) - expected).max() < 1e-12
     assert np.abs(sim.drag[:, :2]).max() == 0.0
@@ -72,9 +73,11 @@ def test_substitution_on_three_spheres_along_their_axis_stops_and_names_the_way_
         assert word in str(error.value)
 
 
-@pytest.mark.parametrize("words", ["cut_off_distance inf", "cut_off_distance 9", "clumps_only yes", "cut_off_distance inf rotation yes"])
+@pytest.mark.parametrize("words", ["cut_off_distance inf", "cut_off_distance 9", "clumps_only yes",
+                                   "cut_off_distance inf rotation yes"])
 def test_where_substitution_diverges_gradients_go_on(simulation, tmp_path, words):
-    """The default never strands a run: one warning, and from then on every force is that of algorithm 2, in this run and the next."""
+    """The default never strands a run: one warning, and from then on every force is that of algorithm 2, in this run
+    and the next."""
     spheres, style = touching_chain(3, ALONG), f"{words} visc {ETA} relative_tolerance 1e-11"
     reference = simulation(spheres, style + " algorithm 2").run().drag
     log = tmp_path / "log"
@@ -88,7 +91,8 @@ def test_where_substitution_diverges_gradients_go_on(simulation, tmp_path, words
 @pytest.mark.parametrize("n,converges", [(4, True), (5, False)])
 def test_substitution_across_a_chain_converges_up_to_four(simulation, n, converges):
     reference = simulation(touching_chain(n, ACROSS), f"cut_off_distance inf visc {ETA} {EXACT}").run().drag
-    sim = simulation(touching_chain(n, ACROSS), f"cut_off_distance inf visc {ETA} max_iter 2000 relative_tolerance 1e-10 "
+    sim = simulation(touching_chain(n, ACROSS),
+                     f"cut_off_distance inf visc {ETA} max_iter 2000 relative_tolerance 1e-10 "
                      "algorithm 1 strict")
     if converges:
         assert largest_difference(sim.run().drag, reference) < 1e-8
@@ -98,15 +102,18 @@ def test_substitution_across_a_chain_converges_up_to_four(simulation, n, converg
 
 
 @pytest.mark.hard_case("more iterations needed than max_iter")
-@pytest.mark.parametrize("words,iterations", [("max_iter 5", 5), ("algorithm 2 precondition none warm_start no max_iter 1", 1)])
+@pytest.mark.parametrize("words,iterations",
+                         [("max_iter 5", 5), ("algorithm 2 precondition none warm_start no max_iter 1", 1)])
 def test_running_out_of_iterations_warns_and_is_counted(simulation, tmp_path, words, iterations):
     log = tmp_path / "log"
-    sim = simulation(touching_chain(4, ACROSS), f"cut_off_distance inf visc {ETA} relative_tolerance 1e-10 {words}", log=log)
+    sim = simulation(touching_chain(4, ACROSS), f"cut_off_distance inf visc {ETA} relative_tolerance 1e-10 {words}",
+                     log=log)
     sim.commands("fix move all nve/sphere\ntimestep 1e-3").run(3)
     assert sim.fix_vector()[6] == sim.solves == 4
     assert sim.residual > 1e-10 and sim.iterations == iterations
     sim.close()
-    warnings = [line for line in log.read_text().splitlines() if line.startswith("WARNING") and "no convergence within the allowed iterations" in line]
+    warnings = [line for line in log.read_text().splitlines() if line.startswith("WARNING") and
+                "no convergence within the allowed iterations" in line]
     assert len(warnings) == 1
     for word in ("residual", f"iteration {iterations}", f"max_iter {iterations}", "relative_tolerance"):
         assert word in warnings[0]
@@ -115,7 +122,8 @@ def test_running_out_of_iterations_warns_and_is_counted(simulation, tmp_path, wo
 # --- algorithm 2 -----------------------------------------------------------------------------------------------------
 
 def test_gradients_take_at_most_14_iterations_for_a_chain_of_100(simulation):
-    sim = simulation(touching_chain(100, ACROSS), f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-6")
+    sim = simulation(touching_chain(100, ACROSS),
+                     f"cut_off_distance inf visc {ETA} algorithm 2 relative_tolerance 1e-6")
     sim.commands("compute p all pair stokes_dynamics\nthermo_style custom step c_p[1] c_p[2]").run()
     assert 1 <= sim.iterations <= 14
     assert sim.compute_vector("p", 2)[0] == sim.iterations and sim.residual <= 1e-6
@@ -259,7 +267,8 @@ def test_answer_turns_with_the_scene(simulation):
     first = simulation(spheres, f"cut_off_distance inf visc {ETA} {EXACT}").run().drag
     Q = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
     turned = Spheres(spheres.x @ Q.T, spheres.a, spheres.v @ Q.T)
-    assert largest_difference(simulation(turned, f"cut_off_distance inf visc {ETA} {EXACT}").run().drag, first @ Q.T) < 1e-9
+    assert largest_difference(simulation(turned, f"cut_off_distance inf visc {ETA} {EXACT}").run().drag,
+                              first @ Q.T) < 1e-9
 
 
 def test_units_do_not_matter(simulation):
@@ -268,6 +277,6 @@ def test_units_do_not_matter(simulation):
     spheres = cloud()
     first = simulation(spheres, f"cut_off_distance inf visc {ETA} {EXACT}").run().drag
     small = Spheres(spheres.x * L, spheres.a * L, spheres.v * L / T)
-    sim = simulation(small, f"cut_off_distance {30 * L} visc {eta} {EXACT}", units="si", before_pair=f"neighbor {0.1 * L} bin",
-                     density=1000.0).run()
+    sim = simulation(small, f"cut_off_distance {30 * L} visc {eta} {EXACT}", units="si",
+                     before_pair=f"neighbor {0.1 * L} bin", density=1000.0).run()
     assert largest_difference(sim.drag, first * (eta / ETA) * L * L / T) < 1e-9

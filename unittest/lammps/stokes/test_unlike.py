@@ -1,5 +1,5 @@
-"""Spheres of unlike radii as shells whose points go with the radius (multiblob 12 lubrication yes), through LAMMPS, against exact Stokes
-flow (unlike.py)."""
+"""Spheres of unlike radii as shells whose points go with the radius (multiblob 12 lubrication yes), through LAMMPS,
+against exact Stokes flow (unlike.py)."""
 import numpy as np
 import pytest
 
@@ -16,7 +16,8 @@ def errors(simulation, tmp_path, ratio, xi, count, style=BY_RADIUS):
     return 100 * unlike.errors(V, V0, ratio), V, V0
 
 
-@pytest.mark.parametrize("ratio, xi", [(2.0, 0.055), (2.5, 0.01), (3.0, 0.1), (5.0, 0.01), (5.0, 0.3), (7.0, 0.055), (10.0, 0.01)])
+@pytest.mark.parametrize("ratio, xi", [(2.0, 0.055), (2.5, 0.01), (3.0, 0.1), (5.0, 0.01), (5.0, 0.3), (7.0, 0.055),
+                                       (10.0, 0.01)])
 def test_lone_pairs(simulation, tmp_path, ratio, xi):
     """Some orientations; the means of twelve are 2 % at most (test_unlike_pair.c), the worst of them 3.2 %."""
     off, _, _ = errors(simulation, tmp_path, ratio, xi, 3 if ratio < 6 else 1)
@@ -25,7 +26,8 @@ def test_lone_pairs(simulation, tmp_path, ratio, xi):
 
 
 def test_points_of_the_large_sphere_alone_make_the_difference(simulation, tmp_path):
-    """A small sphere in the shear beside one ten times as large: with 12 points for both its spin is wrong by more than 15 %."""
+    """A small sphere in the shear beside one ten times as large: with 12 points for both its spin is wrong by more than
+    15 %."""
     by_radius, old = (errors(simulation, tmp_path, 10.0, 0.1, 1, style)
                       for style in (BY_RADIUS, BY_RADIUS + " multiblob_most 12"))
     k = unlike.LOADS.index("E shear")
@@ -35,8 +37,9 @@ def test_points_of_the_large_sphere_alone_make_the_difference(simulation, tmp_pa
 
 @pytest.mark.parametrize("xi", [0.1, 1.9])
 def test_cases_of_lamb(simulation, tmp_path, xi):
-    """Ratio 10 of the 88 cases of Pecnut/stokesian-dynamics, along x as there: what the smaller sphere does by a load on the other one or in
-    a strain, velocities and spins over their own exact values; what it does by its own load, over its own largest motion."""
+    """Ratio 10 of the 88 cases of Pecnut/stokesian-dynamics, along x as there: what the smaller sphere does by a load
+    on the other one or in a strain, velocities and spins over their own exact values; what it does by its own load,
+    over its own largest motion."""
     V0 = unlike.exact(EXACT[10.0, xi])
     along_x = np.array([(0, 0, 1), (1, 0, 0), (0, 1, 0)])
     V = unlike.motions(simulation, tmp_path, 10.0, xi, BY_RADIUS, [along_x])
@@ -51,13 +54,13 @@ def test_cases_of_lamb(simulation, tmp_path, xi):
                 assert np.abs(V[0, k, 1, part] - V0[k, 1, part]).max() < most * known, load
 
 
-# --- groups -----------------------------------------------------------------------------------------------------------------
+# --- groups -----------------------------------------------------------------------------------------------------------
 
-# The worst small sphere in strain, under unlike forces and under unlike torques, per cent, of the prototype (reference of the project,
-# unlike-radii.md 3). With 12 points for all they are 5 to 43 in strain.
-PROTOTYPE = {"1 + 3x0.333 close": (1.5, 0.9, 1.2), "1 + 3x0.2 apart": (0.9, 1.0, 2.6), "1 0.5 0.333 0.1": (0.6, 0.4, 0.6),
-             "1 + 2x0.1": (1.0, 1.8, 3.0), "1 + 3x0.1 close": (1.3, 2.5, 4.9), "1 1 0.2 in the gap": (1.6, 0.7, 0.4),
-             "1 1 0.1 in the gap": (0.8, 3.1, 0.2)}
+# The worst small sphere in strain, under unlike forces and under unlike torques, per cent, of the prototype (reference
+# of the project, unlike-radii.md 3). With 12 points for all they are 5 to 43 in strain.
+PROTOTYPE = {"1 + 3x0.333 close": (1.5, 0.9, 1.2), "1 + 3x0.2 apart": (0.9, 1.0, 2.6),
+             "1 0.5 0.333 0.1": (0.6, 0.4, 0.6), "1 + 2x0.1": (1.0, 1.8, 3.0), "1 + 3x0.1 close": (1.3, 2.5, 4.9),
+             "1 1 0.2 in the gap": (1.6, 0.7, 0.4), "1 1 0.1 in the gap": (0.8, 3.1, 0.2)}
 
 
 @pytest.mark.parametrize("case", sorted(PROTOTYPE))

@@ -1,4 +1,5 @@
-"""multiblob with unlike radii: who has how many points, and that nothing depends on ranks, restarts, images or numbering."""
+"""multiblob with unlike radii: who has how many points, and that nothing depends on ranks, restarts, images or
+numbering."""
 import os
 import re
 
@@ -20,34 +21,39 @@ def apart(radii, spacing):
 def points_of(tmp_path, radii, words, succeed=True):
     """How many points the sum is over, as the log says; the log"""
     x = apart(radii, 20.0) % 100.0
-    lines = input_lines(Spheres(x, radii), f"cut_off_distance inf visc 1 multiblob {words}", os.path.join(str(tmp_path), "data"), "p p p",
-                        [(0.0, 100.0)] * 3, comm="neighbor 0.1 bin", fix=False)
+    lines = input_lines(Spheres(x, radii), f"cut_off_distance inf visc 1 multiblob {words}",
+                        os.path.join(str(tmp_path), "data"), "p p p", [(0.0, 100.0)] * 3, comm="neighbor 0.1 bin",
+                        fix=False)
     log = lmp(tmp_path, lines + [MOVE, "run 0"], succeed=succeed).log
     told = re.search(r"Far field by Ewald sums of (\d+)", log)
     return told and int(told.group(1)), " ".join(log.split())
 
 
 @pytest.mark.parametrize("radii, words, points", [
-    ((1, 1.5), "12", (12, 12)), ((1, 1.51), "12", (12, 42)), ((0.4, 1.0), "12", (12, 42)), ((1, 2.51, 1.6), "12", (12, 162, 42)),
-    ((0.2, 1.0, 0.3), "12", (12, 162, 12)), ((1, 5.1, 2.0, 3.0), "12", (12, 642, 42, 162)), ((1, 10), "12", (12, 642)),
+    ((1, 1.5), "12", (12, 12)), ((1, 1.51), "12", (12, 42)), ((0.4, 1.0), "12", (12, 42)),
+    ((1, 2.51, 1.6), "12", (12, 162, 42)), ((0.2, 1.0, 0.3), "12", (12, 162, 12)),
+    ((1, 5.1, 2.0, 3.0), "12", (12, 642, 42, 162)), ((1, 10), "12", (12, 642)),
     ((1, 1.5), "42", (42, 42)), ((1, 2.0), "42", (42, 42)), ((1, 3.0), "42", (42, 162)), ((1, 6.0), "42", (42, 642)),
-    ((1, 10), "12 multiblob_most 12", (12, 12)), ((1, 10), "12 multiblob_most 42", (12, 42)), ((1, 10, 2), "12 multiblob_most 162", (12, 162, 42)),
-    ((1, 12), "12 multiblob_most 162", (12, 162)), ((1, 1), "162", (162, 162)), ((1, 4), "162", (162, 162)), ((1, 1), "42 half", (42, 42))])
+    ((1, 10), "12 multiblob_most 12", (12, 12)), ((1, 10), "12 multiblob_most 42", (12, 42)),
+    ((1, 10, 2), "12 multiblob_most 162", (12, 162, 42)),
+    ((1, 12), "12 multiblob_most 162", (12, 162)), ((1, 1), "162", (162, 162)), ((1, 4), "162", (162, 162)),
+    ((1, 1), "42 half", (42, 42))])
 def test_points_go_with_the_radius(tmp_path, radii, words, points):
     assert points_of(tmp_path, radii, words)[0] == sum(points)
 
 
 def test_all_alike_is_warned_of(tmp_path):
-    assert "WARNING: Pair style stokes_dynamics: keyword multiblob_most: radii from 1 to 1.6: all spheres have 12 points" in \
-        points_of(tmp_path, (1, 1.6), "12 multiblob_most 12")[1]
+    assert ("WARNING: Pair style stokes_dynamics: keyword multiblob_most: radii from 1 to 1.6: "
+            "all spheres have 12 points" in points_of(tmp_path, (1, 1.6), "12 multiblob_most 12")[1])
     for radii, words in (((1, 1.6), "12"), ((1, 1.4), "12 multiblob_most 12")):
-        assert "multiblob_most" not in re.sub("pair_style.*?visc 1 [a-z0-9_ ]*", "", points_of(tmp_path, radii, words)[1])
+        assert "multiblob_most" not in re.sub("pair_style.*?visc 1 [a-z0-9_ ]*", "",
+                                              points_of(tmp_path, radii, words)[1])
 
 
 def test_beyond_one_to_ten_there_is_an_error(simulation):
     sim = simulation(Spheres([(0, 0, 0), (0, 0, 30)], [1.0, 10.1]), "cut_off_distance inf visc 1 multiblob 12")
-    with pytest.raises(LammpsError, match="keyword multiblob: radii from 1 to 10.1: larger spheres have more points up to a ratio of 10; use "
-                                          "group to select spheres, or multiblob_most 162"):
+    with pytest.raises(LammpsError, match="keyword multiblob: radii from 1 to 10.1: larger spheres have more points up "
+                                          "to a ratio of 10; use group to select spheres, or multiblob_most 162"):
         sim.run()
 
 
@@ -58,7 +64,8 @@ RADII = (0.1, 0.17, 0.3, 0.7, 1.0)
 def test_lone_spheres_of_every_shell_are_exact(simulation, one_body):
     """Far from each other. Without the addition half shells turn too easily, by 0.4 to 5 %."""
     x, F = apart(RADII, 1e6), np.random.default_rng(3).normal(size=(5, 6))
-    sim = simulation(Spheres(x, RADII), f"cut_off_distance inf visc 1.3 multiblob 12 one_body {one_body} relative_tolerance 1e-10", fix=False,
+    sim = simulation(Spheres(x, RADII), f"cut_off_distance inf visc 1.3 multiblob 12 one_body {one_body} "
+                                        "relative_tolerance 1e-10", fix=False,
                      dt=1e-9)
     sim.command("fix load all external pf/callback 1 1")
 
@@ -71,11 +78,13 @@ def test_lone_spheres_of_every_shell_are_exact(simulation, one_body):
     a = np.array(RADII)[:, None]
     assert np.abs(sim.v / (F[:, :3] / (P6 * 1.3 * a)) - 1).max() < 2e-5
     turns = (np.abs(sim.atom("omega") / (F[:, 3:] / (8 * np.pi * 1.3 * a ** 3)) - 1)).max(axis=1)
-    assert turns[0] < 1e-8 and (turns.max() < 1e-8 if one_body == "yes" else turns[1] > 0.04 and 0.003 < turns[4] < 0.02)
+    assert turns[0] < 1e-8 and (turns.max() < 1e-8 if one_body == "yes" else turns[1] > 0.04 and
+                                0.003 < turns[4] < 0.02)
 
 
 def test_moments_of_lone_spheres_of_every_shell(simulation, tmp_path):
-    sim = simulation(Spheres(apart(RADII, 1e4), RADII), "cut_off_distance inf visc 1.3 multiblob 12 fluid_velocity v_u 0 0 "
+    sim = simulation(Spheres(apart(RADII, 1e4), RADII),
+                     "cut_off_distance inf visc 1.3 multiblob 12 fluid_velocity v_u 0 0 "
                      "relative_tolerance 1e-10", before_pair="variable u atom 0.8*y", fix=False, dt=1e-9)
     sim.commands([MOVE, "compute S all stokes_dynamics/stress"] + dump_lines(f"{tmp_path}/out", columns="c_S[4]")).run()
     volume = 20 / 3 * np.pi * 1.3 * np.array(RADII) ** 3
@@ -98,9 +107,11 @@ def crowd(seed=5, sizes=((1.0, 3), (0.45, 12), (0.25, 40))):
 
 
 def script(tmp_path, x, a, words="", before="", molecule=0):
-    lines = input_lines(Spheres(x, a, molecule=molecule), f"cut_off_distance inf visc 1 multiblob 12 lubrication yes {words}",
-                        os.path.join(str(tmp_path), "data"), "p p p", [(0.0, SIDE)] * 3, comm="neighbor 0.1 bin", fix=False, dt=0.01,
-                        before_pair="variable u atom 0.3*sin(z*2*PI/6)\ncompute r all property/atom radius\nvariable w atom -c_r^3")
+    lines = input_lines(Spheres(x, a, molecule=molecule),
+                        f"cut_off_distance inf visc 1 multiblob 12 lubrication yes {words}",
+                        os.path.join(str(tmp_path), "data"), "p p p", [(0.0, SIDE)] * 3, comm="neighbor 0.1 bin",
+                        fix=False, dt=0.01, before_pair="variable u atom 0.3*sin(z*2*PI/6)\n"
+                                                        "compute r all property/atom radius\nvariable w atom -c_r^3")
     return lines + ["fix weight all addforce 0 0 v_w", before or MOVE, "compute S all stokes_dynamics/stress"] + \
         dump_lines("out", columns="vx vy vz omegax omegay omegaz c_S[*]")
 
@@ -124,7 +135,9 @@ def three_sizes(tmp_path, ranks=1, clumps=False, words="", before="", tail=("run
             clear &= ~near
         x, a, molecule = x[clear], a[clear], [m for m, c in zip(molecule, clear) if c]
         words += " rigid_clumps yes"
-    lines = script(tmp_path, x, a, f"fluid_velocity v_u 0 0 relative_tolerance {tolerance} far_field_tolerance 1e-10 {words}", before, molecule)
+    lines = script(tmp_path, x, a,
+                   f"fluid_velocity v_u 0 0 relative_tolerance {tolerance} far_field_tolerance 1e-10 {words}", before,
+                   molecule)
     lmp(tmp_path, lines + list(tail), ranks)
     return last(tmp_path)
 
@@ -147,7 +160,8 @@ def test_noise_of_three_sizes_does_not_depend_on_ranks(tmp_path):
 
 @pytest.mark.parametrize("clumps", [False, True])
 def test_three_sizes_go_on_from_a_restart_file(tmp_path, clumps):
-    """The forces of all points are in it: without them the solves would begin elsewhere, and end within their tolerance elsewhere."""
+    """The forces of all points are in it: without them the solves would begin elsewhere, and end within their tolerance
+    elsewhere."""
     whole = three_sizes(tmp_path, 1, clumps, tail=("run 3", "run 2"), tolerance=1e-3)
     three_sizes(tmp_path, 1, clumps, tail=("run 3", "write_restart half.restart"), tolerance=1e-3)
     again = [line for line in script(tmp_path, *crowd()) if not line.startswith("pair_")]
@@ -169,7 +183,8 @@ def test_who_has_which_shell_is_kept(tmp_path):
 
 
 def test_small_shells_of_42_points_are_half_ones_after_a_restart_too(tmp_path):
-    lines = [line.replace("multiblob 12", "multiblob 42") for line in script(tmp_path, np.array([(1, 1, 1), (3, 3, 3.0)]), (1.0, 0.5))]
+    lines = [line.replace("multiblob 12", "multiblob 42")
+             for line in script(tmp_path, np.array([(1, 1, 1), (3, 3, 3.0)]), (1.0, 0.5))]
     lmp(tmp_path, lines + ["run 1", "write_restart half.restart", "run 1"])
     whole = last(tmp_path)
     lmp(tmp_path, from_restart([line for line in lines if not line.startswith("pair_")]) + ["run 1"])
@@ -192,8 +207,10 @@ def test_forces_of_velocities_of_forces_of_three_sizes(simulation):
     a, F = (1.0, 0.17, 0.55, 0.42, 0.3), np.random.default_rng(4).normal(size=(5, 3))
     style = "cut_off_distance inf visc 1 multiblob 12 lubrication yes relative_tolerance 1e-10"
     lines = ["fix own all property/atom d_fx d_fy d_fz"]
-    lines += [f"set atom {i + 1} " + " ".join(f"d_f{c} {value!r}" for c, value in zip("xyz", map(float, f))) for i, f in enumerate(F)]
-    lines += ["compute own all property/atom d_fx d_fy d_fz"] + [f"variable f{c} atom c_own[{d + 1}]" for d, c in enumerate("xyz")]
+    lines += [f"set atom {i + 1} " + " ".join(f"d_f{c} {value!r}" for c, value in zip("xyz", map(float, f)))
+              for i, f in enumerate(F)]
+    lines += ["compute own all property/atom d_fx d_fy d_fz"] + [f"variable f{c} atom c_own[{d + 1}]"
+                                                                 for d, c in enumerate("xyz")]
     spheres = Spheres(x, a)
     sim = simulation(spheres, style, fix=False, dt=1e-9)
     sim.commands(lines + ["fix pull all addforce v_fx v_fy v_fz", MOVE]).run()
@@ -210,7 +227,8 @@ def test_a_clump_of_unlike_members_falls_as_one_of_finer_shells(simulation):
     found = []
     for words in ("12", "12 multiblob_most 12", "162"):
         sim = simulation(Spheres([(0, 0, 0), (0.8, 0.6 * 1.3, 0.2)], [1.0, 0.35], molecule=1),
-                         f"cut_off_distance inf visc 1 multiblob {words} rigid_clumps yes relative_tolerance 1e-9", fix=False, dt=1e-9)
+                         f"cut_off_distance inf visc 1 multiblob {words} rigid_clumps yes relative_tolerance 1e-9",
+                         fix=False, dt=1e-9)
         sim.commands(["fix weight all addforce 0.3 0 -1", MOVE]).run()
         found.append(np.concatenate([sim.v[0], sim.atom("omega")[0]]))
     size = np.linalg.norm(found[2])

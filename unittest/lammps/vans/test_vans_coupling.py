@@ -4,7 +4,8 @@ import re
 import numpy as np
 import pytest
 from host import allowed
-from vans_helper import Scene, bed_script, close_scenes, dump_rows, run_lmp, write_columns  # noqa: F401 (close_scenes is a fixture)
+# close_scenes is a fixture
+from vans_helper import Scene, bed_script, close_scenes, dump_rows, run_lmp, write_columns  # noqa: F401
 
 N, WATER = 201, "fluid 1000 0.001 gravity 0.4905 0 -9.797 phi_max 0.61"
 MESH = f"mesh {N} 0.0003 0 {WATER}"
@@ -15,16 +16,24 @@ def profile(tmp_path):
     return write_columns(tmp_path / "u.txt", np.concatenate([[0], 0.6 * np.arange(1, N + 1) / N]))
 
 
-@pytest.mark.parametrize("keywords", ["", "sidewall 0.03 1", "surface speed 0.7 viscosity einstein", "turbulence none pressure_gradient -300 viscosity power",
-                                      "fluctuation correlated 7 0.01 renewal 0.0004", "fluctuation langevin 7 0.01 fall_diameter 0.7", "lift 0.2",
+@pytest.mark.parametrize("keywords", ["", "sidewall 0.03 1", "surface speed 0.7 viscosity einstein",
+                                      "turbulence none pressure_gradient -300 viscosity power",
+                                      "fluctuation correlated 7 0.01 renewal 0.0004",
+                                      "fluctuation langevin 7 0.01 fall_diameter 0.7", "lift 0.2",
                                       "discharge 0.03 adjust depth 0.2 surface follow 0.045", "felt volume",
                                       "felt volume classes yes surface speed 0.7 viscosity power",
-                                      "pressure_gradient v_dpdx bed_mixing 0.5 felt volume", "turbulence ni_capart bed_mixing 0.7 pressure_gradient 50 discharge 0.03 "
-                                      "adjust depth 0.2 surface follow 0.045", "discharge 0.02", "felt volume surface follow 0.045 drag brown_lawler", "drag ferguson_church added_mass 0.4 upflow 0.002 discharge 0.012 "
-                                      "surface follow 0.045 sidewall 0.03 1 wall_roughness 1e-3 wall_mixing yes", "classes 6 felt volume turbulence rousseau", "mesh 16 0.004 0 profile zero grains point"])
+                                      "pressure_gradient v_dpdx bed_mixing 0.5 felt volume",
+                                      "turbulence ni_capart bed_mixing 0.7 pressure_gradient 50 discharge 0.03 "
+                                      "adjust depth 0.2 surface follow 0.045", "discharge 0.02",
+                                      "felt volume surface follow 0.045 drag brown_lawler",
+                                      "drag ferguson_church added_mass 0.4 upflow 0.002 discharge 0.012 "
+                                      "surface follow 0.045 sidewall 0.03 1 wall_roughness 1e-3 wall_mixing yes",
+                                      "classes 6 felt volume turbulence rousseau",
+                                      "mesh 16 0.004 0 profile zero grains point"])
 def test_grains_water_bed_and_walls_keep_the_momentum(profile, keywords):
-    """Mobile grains + water + what is on its way = start + what came from outside - what the fixed bed took, by drag and by contacts. Velocity Verlet
-    gives the force of the first and the last step half a time step each. 1e-12 of all that was moved."""
+    """Mobile grains + water + what is on its way = start + what came from outside - what the fixed bed took, by drag
+    and by contacts. Velocity Verlet gives the force of the first and the last step half a time step each. 1e-12 of all
+    that was moved."""
     mesh = f"{WATER} " if keywords.startswith("mesh") else f"{MESH} profile file {profile} "
     s = Scene.of(bed_script(mesh + keywords, spread=0.5 if "classes 6" in keywords else None))
     s.do("unfix gravity")
@@ -36,7 +45,8 @@ def test_grains_water_bed_and_walls_keep_the_momentum(profile, keywords):
         grains = (s.atoms("rmass")[s.atoms("type") == 2] * of_type("v", 0, 2)).sum()
         outside = sum(s.number(k, "vans") for k in ("driving", "bottom", "walls", "surface"))
         moved = sum(abs(s.number(k, "vans")) for k in ("driving", "bottom", "walls", "surface", "momentum"))
-        return grains - s.number("pressed", "vans") + s.number("momentum", "vans") + s.number("transit", "vans") + s.number("others", "vans") - outside, moved
+        return (grains - s.number("pressed", "vans") + s.number("momentum", "vans") + s.number("transit", "vans") +
+                s.number("others", "vans") - outside, moved)
 
     s.do("run 0")
     start, _ = account()
@@ -67,9 +77,11 @@ def moving(kind):
     return f"fluctuation {name} 4711 0.008 " + ("" if name in ("langevin", "depth") else "renewal 0.001 ") + more
 
 
-ALL_THAT_MOVES = ("depth felt volume drag brown_lawler hindrance di_felice added_mass 0.4 upflow 0.002 discharge 0.02 surface follow 0.045 wall_roughness 1e-3 wall_mixing yes "
-                  "gravity v_gx 0 -9.797 sidewall 0.03 1")
-AND_THESE = "langevin schmidt 0.44 turbulence ni_capart bed_mixing 0.5 pressure_gradient v_dpdx drag schiller_naumann fall_diameter 0.7 discharge 0.03 adjust depth 0.05 surface follow 0.045 gravity v_gx 0 -9.797 sidewall 0.03 1"
+ALL_THAT_MOVES = ("depth felt volume drag brown_lawler hindrance di_felice added_mass 0.4 upflow 0.002 discharge 0.02 "
+                  "surface follow 0.045 wall_roughness 1e-3 wall_mixing yes gravity v_gx 0 -9.797 sidewall 0.03 1")
+AND_THESE = ("langevin schmidt 0.44 turbulence ni_capart bed_mixing 0.5 pressure_gradient v_dpdx drag schiller_naumann "
+             "fall_diameter 0.7 discharge 0.03 adjust depth 0.05 surface follow 0.045 gravity v_gx 0 -9.797 "
+             "sidewall 0.03 1")
 
 
 @pytest.mark.parametrize("kind", ["correlated", "depth", "depth felt volume", ALL_THAT_MOVES, AND_THESE])
@@ -77,16 +89,19 @@ def test_ranks_agree(tmp_path, profile, kind):
     """Positions, velocities, forces and profiles on 2 and 4 ranks as on one, to 1e-10; fluctuations on."""
     result = {}
     for ranks, grid in allowed((1, "1 1 1"), (2, "2 1 1"), (4, "2 1 2")):
-        script = bed_script(f"{mesh_for(kind)} profile file {profile} classes yes " + moving(kind), damp=0, processors="processors " + grid)
+        script = bed_script(f"{mesh_for(kind)} profile file {profile} classes yes " + moving(kind), damp=0,
+                            processors="processors " + grid)
         script += f"""
 fix out all ave/time 100 1 100 f_vans[*] mode vector file profile.{ranks}
 thermo_style custom step f_vans[1] f_vans[4] f_vans[6] f_vans[8]
 run 400
-write_dump all custom dump.{ranks} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[3] f_vans[4] f_vans[5] f_vans[6] modify format float %.17g
+write_dump all custom dump.{ranks} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[3] f_vans[4] f_vans[5] f_vans[6] &
+  modify format float %.17g
 """
         done = run_lmp(tmp_path, script, ranks, name=f"in.{ranks}")
         assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
-        result[ranks] = dump_rows(tmp_path / f"dump.{ranks}"), np.loadtxt([x for x in open(tmp_path / f"profile.{ranks}") if len(x.split()) > 2])
+        result[ranks] = dump_rows(tmp_path / f"dump.{ranks}"), np.loadtxt(
+            [x for x in open(tmp_path / f"profile.{ranks}") if len(x.split()) > 2])
     atoms, profiles = result[1]
     assert np.abs(atoms[:, 10:13]).max() > 0.005    # there are fluctuations
     for ranks in allowed(2, 4):
@@ -100,20 +115,25 @@ write_dump all custom dump.{ranks} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[
 @pytest.mark.ranks(2)
 @pytest.mark.parametrize("kind", ["correlated", "depth", "correlated felt volume", ALL_THAT_MOVES, AND_THESE])
 def test_restart_goes_on_as_if_unbroken(tmp_path, profile, kind):
-    """Broken at a step that is no coupling step. Contacts without damping: LAMMPS's own contact forces at the first step of a run are those of the
-    velocity at full step, others those at half step, so that damped contacts are not the same after any restart."""
+    """Broken at a step that is no coupling step. Contacts without damping: LAMMPS's own contact forces at the first
+    step of a run are those of the velocity at full step, others those at half step, so that damped contacts are not the
+    same after any restart."""
     script = bed_script(f"{mesh_for(kind)} profile file {profile} " + moving(kind), damp=0)
-    output = "write_dump all custom dump.{0} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[3] f_vans[4] f_vans[5] f_vans[6] modify format float %.17g\n"
-    done = run_lmp(tmp_path, script + "run 150\nwrite_restart half\nrun 250\n" + output.format("split"), name="in.split")
+    output = ("write_dump all custom dump.{0} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[3] f_vans[4] f_vans[5] "
+              "f_vans[6] modify format float %.17g\n")
+    done = run_lmp(tmp_path, script + "run 150\nwrite_restart half\nrun 250\n" + output.format("split"),
+                   name="in.split")
     assert done.returncode == 0, done.stdout[-2000:]
     done = run_lmp(tmp_path, script + "run 400\n" + output.format("whole"), name="in.whole")
     assert done.returncode == 0, done.stdout[-2000:]
-    again = script[:script.index("region box")] + "read_restart half\n" + script[script.index("pair_style"):] + "run 250\n" + output.format("again")
+    again = (script[:script.index("region box")] + "read_restart half\n" + script[script.index("pair_style"):] +
+             "run 250\n" + output.format("again"))
     done = run_lmp(tmp_path, again, 2, name="in.again")
     assert done.returncode == 0, done.stdout[-2000:]
     whole, names = dump_rows(tmp_path / "dump.whole"), ["split", "again"]
     if "v_" not in kind:    # variables know the step
-        done = run_lmp(tmp_path, script + "run 150\nreset_timestep 1000150\nrun 250\n" + output.format("reset"), name="in.reset")
+        done = run_lmp(tmp_path, script + "run 150\nreset_timestep 1000150\nrun 250\n" + output.format("reset"),
+                       name="in.reset")
         assert done.returncode == 0, done.stdout[-2000:]
         names.append("reset")
     for name in names:
@@ -122,8 +142,10 @@ def test_restart_goes_on_as_if_unbroken(tmp_path, profile, kind):
 
 
 def test_a_push_after_the_run_is_seen_in_the_restart_file_too(tmp_path):
-    """The force of the last step is that of the old velocities: behind the push it counts neither in the script nor from the file."""
-    script, output = bed_script(MESH, layers=2), "run 0\nwrite_dump all custom dump.{0} id f_vans[1] f_vans[2] f_vans[3] modify format float %.17g\n"
+    """The force of the last step is that of the old velocities: behind the push it counts neither in the script nor
+    from the file."""
+    script = bed_script(MESH, layers=2)
+    output = "run 0\nwrite_dump all custom dump.{0} id f_vans[1] f_vans[2] f_vans[3] modify format float %.17g\n"
     pushed = script + "run 30\nvelocity mobile set 0.5 0 0\n"
     runs = {"here": pushed, "file": pushed + "write_restart half\n",
             "there": script[:script.index("region box")] + "read_restart half\n" + script[script.index("pair_style"):]}
@@ -134,14 +156,19 @@ def test_a_push_after_the_run_is_seen_in_the_restart_file_too(tmp_path):
     assert np.abs(there - here).max() < 1e-10 * np.abs(here[:, 1:]).max()
 
 
-@pytest.mark.parametrize("keywords", ["gravity v_gx 0 v_gz stream rest", "gravity 0.4905 0 v_gz stream rest couple one upflow v_up"])
+@pytest.mark.parametrize("keywords", ["gravity v_gx 0 v_gz stream rest",
+                                      "gravity 0.4905 0 v_gz stream rest couple one upflow v_up"])
 def test_gravity_in_a_run_in_pieces_is_that_of_the_last_coupling(tmp_path, profile, keywords):
-    """A variable is read at every coupling: broken between two of them, a run goes on with what it had, from memory and from a restart file."""
+    """A variable is read at every coupling: broken between two of them, a run goes on with what it had, from memory and
+    from a restart file."""
     variables = "variable gz equal -9.8*(1+100*step*dt)\nvariable up equal 0.01*(1+300*step*dt)\nfix vans"
-    script = bed_script(f"mesh {N} 0.0003 0 fluid 1000 0.001 phi_max 0.61 profile file {profile} {keywords}", layers=2).replace("fix vans", variables)
-    output = "write_dump all custom dump.{0} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[3] modify format float %.17g\n"
+    script = bed_script(f"mesh {N} 0.0003 0 fluid 1000 0.001 phi_max 0.61 profile file {profile} {keywords}",
+                        layers=2).replace("fix vans", variables)
+    output = ("write_dump all custom dump.{0} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[3] modify "
+              "format float %.17g\n")
     runs = {"whole": script + "run 70\n", "split": script + "run 33\nwrite_restart half\nrun 37\n",
-            "again": script[:script.index("region box")] + "read_restart half\n" + script[script.index("pair_style"):] + "run 37\n"}
+            "again": script[:script.index("region box")] + "read_restart half\n" + script[script.index("pair_style"):] +
+            "run 37\n"}
     for name, text in runs.items():
         done = run_lmp(tmp_path, text + output.format(name), name="in." + name)
         assert done.returncode == 0, done.stdout[-2000:]
@@ -151,19 +178,23 @@ def test_gravity_in_a_run_in_pieces_is_that_of_the_last_coupling(tmp_path, profi
         assert (np.abs(other - whole).max(axis=0) / (np.abs(whole).max(axis=0) + 1e-300)).max() < 1e-10, name
 
 
-@pytest.mark.parametrize("keywords", ["fluctuation langevin 7 0.01", "fluctuation correlated 7 0.01", "fluctuation depth 7 0.01", "discharge {}0.02 surface follow 0.045",
+@pytest.mark.parametrize("keywords", ["fluctuation langevin 7 0.01", "fluctuation correlated 7 0.01",
+                                      "fluctuation depth 7 0.01", "discharge {}0.02 surface follow 0.045",
                                       "discharge {}0.03 adjust depth 0.2 surface follow 0.045"])
 def test_a_stream_along_minus_x_is_the_mirror_image(tmp_path, keywords):
     rows = []
     for sign in (1, -1):
         u = write_columns(tmp_path / "u.txt", sign * np.concatenate([[0], 0.6 * np.arange(1, N + 1) / N]))
-        script = bed_script(f"mesh {N} 0.0003 0 fluid 1000 0.001 gravity {sign * 0.4905} 0 -9.797 phi_max 0.61 profile file {u} " + keywords.format("-" if sign < 0 else ""),
+        script = bed_script(f"mesh {N} 0.0003 0 fluid 1000 0.001 gravity {sign * 0.4905} 0 -9.797 phi_max 0.61 "
+                            f"profile file {u} " + keywords.format("-" if sign < 0 else ""),
                             layers=2).replace("vector 0.05", f"vector {sign * 0.05}")
         if sign < 0:    # grains too
-            script = re.sub(r"single (\S+)", lambda m: f"single {0.03 - float(m.group(1)):.17g}", re.sub(r" vx (\S+)", lambda m: f" vx {-float(m.group(1)):.17g}", script))
+            script = re.sub(r"single (\S+)", lambda m: f"single {0.03 - float(m.group(1)):.17g}", re.sub(
+                r" vx (\S+)", lambda m: f" vx {-float(m.group(1)):.17g}", script))
         s = Scene.of(script)
         s.do("run 100")
-        rows.append([s.atoms("v"), s.atoms("f_vans"), s.column("u", N, "vans"), [s.number(k, "vans") for k in ("friction_velocity", "shields", "largest_stress", "transport")]])
+        rows.append([s.atoms("v"), s.atoms("f_vans"), s.column("u", N, "vans"),
+                     [s.number(k, "vans") for k in ("friction_velocity", "shields", "largest_stress", "transport")]])
         s.close()
     mirror = [[-1, 1, 1], [-1, 1, 1, -1, 1, 1], -1, [1, -1, -1, -1]]
     for one, other, sign in zip(*rows, mirror):
@@ -175,16 +206,19 @@ def test_a_stream_along_minus_x_is_the_mirror_image(tmp_path, keywords):
 def cloud(n, box, z, diameter, seed=2):
     """Grains at random places that do not touch each other (pair_style zero)."""
     x = np.random.default_rng(seed).uniform([0, 0, z[0]], [box[0], box[1], z[1]], (n, 3))
-    return [f"create_atoms 1 single {a:.17g} {b:.17g} {c:.17g} units box" for a, b, c in x] + [f"set group all diameter {diameter} density 2500"]
+    return [f"create_atoms 1 single {a:.17g} {b:.17g} {c:.17g} units box" for a, b,
+            c in x] + [f"set group all diameter {diameter} density 2500"]
 
 
 def test_nothing_stays_on_its_way_when_the_motion_ends(tmp_path):
-    """Grains at rest in viscous water that moves: it takes them along, and the bottom stops both within e^-20. The water has given what the grains
-    got, and has it back: vector 12 is 0, and what the bottom took is all that there was."""
+    """Grains at rest in viscous water that moves: it takes them along, and the bottom stops both within e^-20. The
+    water has given what the grains got, and has it back: vector 12 is 0, and what the bottom took is all that there
+    was."""
     u = write_columns(tmp_path / "u", np.concatenate([[0], 0.1 * np.ones(21)]))
     s = Scene(box=(0, 0.006, 0, 0.006, -0.02, 0.02))
     s.do(*cloud(60, (0.006, 0.006), (0.001, 0.0045), 0.001))
-    s.do("timestep 2e-4", f"fix h all hydro/vans 5 mesh 21 0.00025 0 fluid 1000 0.1 gravity 0 0 -1e-9 turbulence none profile file {u}", "fix m all nve/sphere", "run 0")
+    s.do("timestep 2e-4", "fix h all hydro/vans 5 mesh 21 0.00025 0 fluid 1000 0.1 gravity 0 0 -1e-9 turbulence none "
+                          f"profile file {u}", "fix m all nve/sphere", "run 0")
     start = s.number("momentum")
     s.do("run 100")
     assert (s.atoms("rmass") * s.atoms("v")[:, 0]).sum() > 0.05 * start
@@ -217,7 +251,8 @@ def bed_of_specks(d, every, keywords=""):
     """A bed of phi 0.4, 12 diameters deep under 28 of water, with time steps of 1e-5."""
     w = 6 * d
     grains = cloud(int(0.4 * 6 * 6 * 12 / (np.pi / 6)), (w, w), (0.5 * d, 12 * d), d)
-    return COUPLED.format(d=d, w=w, low=-d, high=45 * d, dz=d, dt=1e-5, every=every, grains="\n".join(grains), keywords=keywords + " area %g" % (w * w))
+    return COUPLED.format(d=d, w=w, low=-d, high=45 * d, dz=d, dt=1e-5, every=every, grains="\n".join(grains),
+                          keywords=keywords + " area %g" % (w * w))
 
 
 def coupled(tmp_path, d, every, keywords=""):
@@ -233,11 +268,16 @@ def test_coupling_time_that_is_too_long_is_told(tmp_path, d, every, told):
     assert ("couplings are too far apart" in coupled(tmp_path, d, every)) == told
 
 
-@pytest.mark.parametrize("every, solve, told", [(100, "", True), (10, "solve 1e-3 1e-4", True), (10, "", False), (100, "solve 1e-4 1e-5", False)])
+@pytest.mark.parametrize("every, solve, told", [(100, "", True), (10, "solve 1e-3 1e-4", True), (10, "", False),
+                                                (100, "solve 1e-4 1e-5", False)])
 def test_it_is_the_time_of_a_solve_that_counts(tmp_path, every, solve, told):
-    """1 ms or 0.1 ms of water, after 1 ms or 0.1 ms of the grains, which are fixed: b T is 8 or 0.8. Where that is told, the water of the first solve is
-    three times as fast as in the end, whatever N; the advice says what is to be changed."""
-    script = bed_of_specks(1e-4, every, solve).replace("run 1", f"variable u equal f_h[6][2]\nfix u all ave/time {every} 1 {every} v_u file u\nrun {12 * every}")
+    """1 ms or 0.1 ms of water, after 1 ms or 0.1 ms of the grains, which are fixed: b T is 8 or 0.8. Where that is
+    told, the water of the first solve is three times as fast as in the end, whatever N; the advice says what is to be
+    changed."""
+    script = bed_of_specks(1e-4, every, solve).replace("run 1",
+                                                       "variable u equal f_h[6][2]\n"
+                                                       f"fix u all ave/time {every} 1 {every} v_u file u\n"
+                                                       f"run {12 * every}")
     done = run_lmp(tmp_path, script)
     assert done.returncode == 0, done.stdout[-1000:]
     advice = ": a shorter period of keyword solve, and N steps that take as long" if solve else ": fewer steps N"
@@ -263,31 +303,37 @@ def test_what_holds_grains_stands_behind_the_stream(tmp_path, before):
     assert ("fix hold of style setforce stands before this fix in the input" in done.stdout) == before
 
 
-@pytest.mark.parametrize("model, wall, told", [("langevin", "reflect", True), ("langevin", "lj126", False), ("correlated", "reflect", False)])
+@pytest.mark.parametrize("model, wall, told", [("langevin", "reflect", True), ("langevin", "lj126", False),
+                                               ("correlated", "reflect", False)])
 def test_a_wall_that_mirrors_grains_is_told(tmp_path, model, wall, told):
     end = "zhi 0.004" if wall == "reflect" else "zhi 0.004 1e-12 1e-6 2e-6"
-    done = run_lmp(tmp_path, bed_of_specks(1e-4, 10, f"fluctuation {model} 3 -1").replace("run 1", f"fix top all wall/{wall} {end}\nrun 1\nrun 1"))
+    done = run_lmp(tmp_path, bed_of_specks(1e-4, 10, f"fluctuation {model} 3 -1").replace(
+        "run 1", f"fix top all wall/{wall} {end}\nrun 1\nrun 1"))
     assert done.returncode == 0, done.stdout[-1000:]
     assert done.stdout.count("fix top of style wall/reflect turns grains back, but not the fluctuation") == told
 
 
-@pytest.mark.parametrize("keywords, told", [("conserve no", True), ("rules yade", True), ("conserve yes", False), ("conserve no solve 1e-4 1e-7", False)])
+@pytest.mark.parametrize("keywords, told", [("conserve no", True), ("rules yade", True), ("conserve yes", False),
+                                            ("conserve no solve 1e-4 1e-7", False)])
 def test_exchange_that_is_cut_off_is_told(tmp_path, keywords, told):
-    """Grains of 0.05 mm every 0.1 ms, with fluid steps of 10 us: b is above 1/(10 dt), and the water too fast unless the books are kept."""
+    """Grains of 0.05 mm every 0.1 ms, with fluid steps of 10 us: b is above 1/(10 dt), and the water too fast unless
+    the books are kept."""
     assert ("of the drag does not reach the water" in coupled(tmp_path, 5e-5, 10, keywords)) == told
 
 
 @pytest.mark.parametrize("conserve", ["yes", "no"])
 def test_water_in_a_bed_of_spheres_that_overlap_is_even(conserve):
-    """160 fixed spheres at even heights, phi 0.66 above phi_max 0.61, so that there is no eddy viscosity: all the water in the bed has the velocity where
-    drag balances the slope, f(U) n = rho (1 - phi) g, and so it stays. (Felt at the centre, waves of half a diameter grow until the run ends.)"""
+    """160 fixed spheres at even heights, phi 0.66 above phi_max 0.61, so that there is no eddy viscosity: all the water
+    in the bed has the velocity where drag balances the slope, f(U) n = rho (1 - phi) g, and so it stays. (Felt at the
+    centre, waves of half a diameter grow until the run ends.)"""
     d, phi, width, g = 0.006, 0.66, 0.024, 0.4905
     height = np.pi / 6 * d / phi * 10
     s = Scene(box=(0, width, 0, width, -d, 0.18))
     x = np.random.default_rng(1).uniform(0, width, (160, 3))
     x[:, 2] = d / 2 + (np.arange(160) + 0.5) / 160 * height
     s.spheres(x, np.zeros((160, 3)), d / 2)
-    s.do("timestep 1e-2", f"fix h all hydro/vans 1 mesh 151 {0.09 / 150} 0 fluid 1000 0.001 gravity {g} 0 -9.8 solve 0.01 1e-3 phi_max 0.61 felt volume conserve {conserve}",
+    s.do("timestep 1e-2", f"fix h all hydro/vans 1 mesh 151 {0.09 / 150} 0 fluid 1000 0.001 gravity {g} 0 -9.8 solve "
+                          f"0.01 1e-3 phi_max 0.61 felt volume conserve {conserve}",
          "run 3000")
     z, U, phi = s.column("z", 151), s.column("u", 151), s.column("phi", 151)
     inside = (z > 2 * d) & (z < height - 2 * d)
@@ -305,10 +351,13 @@ def test_fluctuations_by_depth_know_no_unit_of_time(tmp_path):
     """The same grains in micrometres and microseconds have the same fluctuations after 200 couplings of 1 ms."""
     seen = []
     for units, L, T, density in (("si", 1.0, 1.0, 1.0), ("micro", 1e6, 1e6, 1e-3)):
-        s = Scene(box=(0, 0.02 * L, 0, 0.02 * L, -0.02 * L, 0.15 * L), units=units, extra=[f"pair_style zero {0.01 * L}", "pair_coeff * *", f"neighbor {0.001 * L} bin"])
-        s.spheres(L * np.random.default_rng(3).uniform([0, 0, 0.001], [0.02, 0.02, 0.0199], (50, 3)), np.zeros((50, 3)), 1e-4 * L, density=2500 * density)
+        s = Scene(box=(0, 0.02 * L, 0, 0.02 * L, -0.02 * L, 0.15 * L), units=units,
+                  extra=[f"pair_style zero {0.01 * L}", "pair_coeff * *", f"neighbor {0.001 * L} bin"])
+        s.spheres(L * np.random.default_rng(3).uniform([0, 0, 0.001], [0.02, 0.02, 0.0199], (50, 3)), np.zeros((50, 3)),
+                  1e-4 * L, density=2500 * density)
         u = write_columns(tmp_path / "u", 0.02 * np.arange(22))
-        s.do(f"timestep {1e-3 * T}", f"fix h all hydro/vans 1 mesh 21 {1e-3 * L} 0 fluid {1000 * density} {0.001 * density * L * L / T} gravity {0.5 * L / T / T} 0 {-9.8 * L / T / T} "
+        s.do(f"timestep {1e-3 * T}", f"fix h all hydro/vans 1 mesh 21 {1e-3 * L} 0 fluid {1000 * density} "
+             f"{0.001 * density * L * L / T} gravity {0.5 * L / T / T} 0 {-9.8 * L / T / T} "
              f"couple none profile file {u} fluctuation depth 5 0", "run 200")
         seen.append(s.atoms("f_h")[:, 3:])
         s.close()
@@ -318,7 +367,8 @@ def test_fluctuations_by_depth_know_no_unit_of_time(tmp_path):
 
 @pytest.mark.parametrize("molecule", [1, -5])
 def test_shares_of_a_clump_follow_its_members(molecule):
-    """overlap once: a member is replaced by another, or grows; the number of atoms stays. Volume of the union by the formula of two spheres."""
+    """overlap once: a member is replaced by another, or grows; the number of atoms stays. Volume of the union by the
+    formula of two spheres."""
     def union(a, b, h):
         lens = np.pi * (a + b - h) ** 2 * (h * h + 2 * h * (a + b) - 3 * (a - b) ** 2) / (12 * h)
         return 4 / 3 * np.pi * (a ** 3 + b ** 3) - lens
@@ -326,7 +376,8 @@ def test_shares_of_a_clump_follow_its_members(molecule):
     s = Scene(style="hybrid sphere bond")
     s.spheres([[0.01, 0.01, 0.015], [0.0113, 0.01, 0.015], [0.004, 0.01, 0.015]], np.zeros((3, 3)), 0.001)
     s.molecule([1, 2], molecule)
-    s.do("fix h all hydro/vans 1 mesh 41 0.001 0 fluid 1030 0.0017 gravity 0 0 -9.7 couple one stream rest overlap once",
+    s.do("fix h all hydro/vans 1 mesh 41 0.001 0 fluid 1030 0.0017 gravity 0 0 -9.7 couple one stream "
+         "rest overlap once",
          "run 1")
 
     def volume():
@@ -334,7 +385,8 @@ def test_shares_of_a_clump_follow_its_members(molecule):
 
     sphere = 4 / 3 * np.pi * 1e-9
     assert abs(volume() / (sphere + union(0.001, 0.001, 0.0013)) - 1) < 1e-10
-    s.do("group gone id 2", "delete_atoms group gone compress no", "create_atoms 1 single 0.0116 0.01 0.015 units box", "set atom 4 diameter 0.002 density 2500")
+    s.do("group gone id 2", "delete_atoms group gone compress no", "create_atoms 1 single 0.0116 0.01 0.015 units box",
+         "set atom 4 diameter 0.002 density 2500")
     s.molecule([4], molecule)
     s.do("run 1")
     assert abs(volume() / (sphere + union(0.001, 0.001, 0.0016)) - 1) < 1e-10
@@ -343,11 +395,13 @@ def test_shares_of_a_clump_follow_its_members(molecule):
 
 
 def test_clump_wider_than_half_the_box():
-    """A chain of nine along x in a box that is only twice its radius longer: every pair of neighbours shares one lens."""
+    """A chain of nine along x in a box that is only twice its radius longer: every pair of neighbours shares one
+    lens."""
     a, h, n = 0.001, 0.0012, 9
     s = Scene(box=(0, 0.012, 0, 0.02, -0.02, 0.15), style="hybrid sphere bond")
     s.spheres([[0.0011 + h * k, 0.01, 0.015] for k in range(n)], np.zeros((n, 3)), a)
-    s.do("set group all mol 1", "fix h all hydro/vans 1 mesh 41 0.001 0 fluid 1030 0.0017 gravity 0 0 -9.7 couple one stream rest overlap once", "run 0")
+    s.do("set group all mol 1", "fix h all hydro/vans 1 mesh 41 0.001 0 fluid 1030 0.0017 gravity 0 0 -9.7 couple one "
+                                "stream rest overlap once", "run 0")
     lens = np.pi * (4 * a + h) * (2 * a - h) ** 2 / 12
     volume = (s.column("phi", 41) * 0.001 * 0.012 * 0.02).sum()
     assert abs(volume / (n * 4 / 3 * np.pi * a ** 3 - (n - 1) * lens) - 1) < 1e-10

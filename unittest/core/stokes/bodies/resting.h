@@ -1,5 +1,5 @@
-/* Spheres of a scene as bodies that all rest in a fluid that moves with the slip: the resistance problem of sd_solve.h by
- * sd_bodies.h. */
+/* Spheres of a scene as bodies that all rest in a fluid that moves with the slip: the resistance problem of sd_solve.h
+ * by sd_bodies.h. */
 #ifndef RESTING_H
 #define RESTING_H
 
@@ -57,8 +57,8 @@ static inline double resting_residual(scene *s, const double *slip, const double
   return sqrt(left / all);
 }
 
-/* The fewest products with which resting bodies reach that residual, whatever their own tolerance has to be for it; F as above, for
- * every try */
+/* The fewest products with which resting bodies reach that residual, whatever their own tolerance has to be for it; F
+ * as above, for every try */
 static inline int resting_to_residual(scene *s, const double *slip, const double *guess, double residual, double *F)
 {
   int products = 0;

@@ -70,7 +70,8 @@ static void make_shapes(cloud *s)
 
 static cloud *cloud_create(void)
 {
-  static const double at[3 * BODIES] = {0, 0, 0, 3.4, 0.5, 0, -1, 2.2, 0.3, 0.4, -0.3, 2.3, -2.4, -0.2, 0.5, 1, 3.5, 1.5, 0, -2.6, 0};
+  static const double at[3 * BODIES] = {0, 0, 0, 3.4, 0.5, 0, -1, 2.2, 0.3, 0.4, -0.3, 2.3, -2.4, -0.2, 0.5, 1, 3.5,
+                                        1.5, 0, -2.6, 0};
   cloud *s = calloc(1, sizeof(cloud));
   const double turn[3] = {0.7, -0.3, 0.5};
   uint64_t seed = 3;

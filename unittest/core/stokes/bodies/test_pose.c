@@ -9,7 +9,8 @@ static const double chain5[15] = {0, 0, -4, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 0, 4}
 static const double ones[5] = {1, 1, 1, 1, 1};
 
 /* A step of dt with (U, W) = V of the centroid */
-static void advance_pose(double pose[12], const double V[6], double dt, int n, const double *X, double turn[9], double *x)
+static void advance_pose(double pose[12], const double V[6], double dt, int n, const double *X, double turn[9],
+                         double *x)
 {
   static const double centroid[3] = {0.0};
   double step[6];

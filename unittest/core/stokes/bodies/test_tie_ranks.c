@@ -1,5 +1,6 @@
-/* Films on several ranks (sd_tie_factor.h). Each has the factor of its own bodies and shares that of a layer with others; the answer
- * is that of one rank, in as many products with the mobility, on two ranks in as many with the films, and on four not in many more. */
+/* Films on several ranks (sd_tie_factor.h). Each has the factor of its own bodies and shares that of a layer with
+ * others; the answer is that of one rank, in as many products with the mobility, on two ranks in as many with the
+ * films, and on four not in many more. */
 #include "on_ranks.h"
 
 #include "settling.h"
@@ -73,7 +74,8 @@ static void work(rank *r, const void *ctx)
   mobility m = {r, s->packed};
   sd_lubrication L = {0};
   sd_tie tie = {.L = &L};
-  const sd_lubrication_scene scene = {.functions = s->near.functions, .gap = s->near.gap, .range = s->near.range, .n = r->n,
+  const sd_lubrication_scene scene = {.functions = s->near.functions, .gap = s->near.gap, .range = s->near.range,
+                                      .n = r->n,
                                       .n_all = N, .spheres = {x, a, w}, .world = rank_world(r)};
   sd_bodies A = s->A;
   A.lone = A.spheres.n = A.points.n = r->n;
@@ -143,8 +145,8 @@ static void films_of_ranks_are_those_of_one(void **state)
         products = found->products;
         within = found->within;
       }
-      print_message("phi %.1f, gaps %g, %d ranks: %d products, %ld with L", of[e].phi, of[e].gap, ranks, found->products,
-                    found->within);
+      print_message("phi %.1f, gaps %g, %d ranks: %d products, %ld with L", of[e].phi, of[e].gap, ranks,
+                    found->products, found->within);
       assert_true(found->products <= products + 1);
       assert_true(ranks == 1 || (double) found->within <= of[e].most[ranks > 2] * (double) within);
       solve_on(ranks, s, found, 1, 1e-3); /* as it stands, from what it found */

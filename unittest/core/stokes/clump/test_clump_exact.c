@@ -5,7 +5,7 @@
 #include "sd_product.h"
 #include "sd_solve.h"
 
-/* --- shell 1: the model's own values -------------------------------------------------------------------------- */
+/* --- shell 1: the model's own values --------------------------------------------------------------------------- */
 
 typedef struct {
   const double *x, *a;
@@ -123,7 +123,7 @@ static void row_of_four_has_the_values_of_pygrpy(void **state)
   sd_clump_free(&clump);
 }
 
-/* --- shells: the exact values ------------------------------------------------------------------------------------ */
+/* --- shells: the exact values ------------------------------------------------------------------------------------- */
 
 static const struct {
   int n;

@@ -1,5 +1,5 @@
-/* Spheres in a periodic box on one rank: their images as ghosts, as LAMMPS would have them, and the engine ewald placed among
- * them. */
+/* Spheres in a periodic box on one rank: their images as ghosts, as LAMMPS would have them, and the engine ewald placed
+ * among them. */
 #ifndef PERIODIC_H
 #define PERIODIC_H
 
@@ -64,7 +64,8 @@ static inline void periodic_fractions(const sd_ewald_box *b, const double *x, do
   f[0] = (r[0] - b->tilt[0] * f[1] - b->tilt[1] * f[2]) / b->edge[0];
 }
 
-/* All images that a sphere of the box may see: within reach of its faces. The spheres themselves stay where they are. */
+/* All images that a sphere of the box may see: within reach of its faces. The spheres themselves stay where they
+   are. */
 static inline void periodic_images(periodic *p, const double *x, const double *a, const double *w)
 {
   const sd_ewald_box *b = &p->ewald.box;
@@ -117,8 +118,8 @@ static inline const sd_mobility_engine *periodic_engine(const sd_ewald_level *se
 }
 
 /* With two levels that are given */
-static inline void periodic_place_levels(periodic *p, const double *x, const double *a, const double *w, int n, int width,
-                                         const sd_ewald *first, const sd_ewald_level *second)
+static inline void periodic_place_levels(periodic *p, const double *x, const double *a, const double *w, int n,
+                                         int width, const sd_ewald *first, const sd_ewald_level *second)
 {
   memset(p, 0, sizeof(*p));
   p->n = n;

@@ -1,6 +1,6 @@
-/* The error of an Ewald sum to expect, as its tolerance is meant, of forces that are independent and about as large as a: the part
- * of each pair beyond the range, the waves beyond the grid, and those that the window mistakes. A formula with integrals over k
- * and r; sizes as for sd_ewald_choose. */
+/* The error of an Ewald sum to expect, as its tolerance is meant, of forces that are independent and about as large as
+ * a: the part of each pair beyond the range, the waves beyond the grid, and those that the window mistakes. A formula
+ * with integrals over k and r; sizes as for sd_ewald_choose. */
 #ifndef PREDICTED_H
 #define PREDICTED_H
 
@@ -52,8 +52,8 @@ static double mean_square(const double *moment, double k2)
   return 1.0 - 2.0 * moment[1] * k2 + moment[2] * k2 * k2;
 }
 
-/* Near part, of sources of number density 1: int 4 pi r^2 [A^2 + (2AB + B^2)/3] dr of what lies beyond the range, A and B the
- * coefficients of 1 and hh. The tensor is that of spheres apart. */
+/* Near part, of sources of number density 1: int 4 pi r^2 [A^2 + (2AB + B^2)/3] dr of what lies beyond the range, A and
+ * B the coefficients of 1 and hh. The tensor is that of spheres apart. */
 static double near_error(const sd_ewald *e, const moments *m)
 {
   enum { STEPS = 48 };

@@ -85,8 +85,8 @@ static void velocities_are_those_of_dense_sums(void **state)
   }
 }
 
-/* The drag of given velocities, R, and that of all moving together, S; forces that add up coherently need the mean of what lies
- * beyond the range. */
+/* The drag of given velocities, R, and that of all moving together, S; forces that add up coherently need the mean of
+ * what lies beyond the range. */
 static void forces_of_given_velocities_are_those_of_dense_sums(void **state)
 {
   (void) state;
@@ -96,7 +96,8 @@ static void forces_of_given_velocities_are_those_of_dense_sums(void **state)
       const double tolerance = pow(10.0, -digits);
       const sd_ewald how = periodic_choose(&s.box, s.a, s.n, s.width, tolerance);
       periodic p;
-      double drag[MOST], spin[MOST], slip[6 * MOST], F[6 * MOST], *work = malloc(sizeof(double) * SD_SOLVE_WORK(MOST, 6));
+      double drag[MOST], spin[MOST], slip[6 * MOST], F[6 * MOST], *work = malloc(sizeof(double) *
+                                                                                 SD_SOLVE_WORK(MOST, 6));
       periodic_place(&p, s.x, s.a, NULL, s.n, s.width, &how);
       for (int i = 0; i < s.n; i++) {
         drag[i] = 6.0 * SD_PI * s.a[i];
@@ -140,7 +141,8 @@ static double difference(const reference *s, const double *x, const sd_ewald *ho
 static const char *const varied[] = {"p02", "p05", "p07", "p12", "p14"};
 enum { VARIED = sizeof(varied) / sizeof(varied[0]) };
 
-/* The rule for a tighter tolerance has another xi, range, radius a_ref, window and grid: nothing of these is in the answer. */
+/* The rule for a tighter tolerance has another xi, range, radius a_ref, window and grid: nothing of these is in the
+   answer. */
 static void another_splitting_has_the_same_answer(void **state)
 {
   (void) state;
@@ -157,7 +159,8 @@ static void another_splitting_has_the_same_answer(void **state)
   }
 }
 
-/* By a fraction of the grid's spacing, and out of the box on all sides: also spheres outside of the box have their images. */
+/* By a fraction of the grid's spacing, and out of the box on all sides: also spheres outside of the box have their
+   images. */
 static void a_translation_changes_nothing(void **state)
 {
   (void) state;
@@ -171,7 +174,8 @@ static void a_translation_changes_nothing(void **state)
       for (int d = 0; d < 3; d++) shift[d] = uniform(&seed, -1.0, 1.0) * s.box.edge[d];
       for (int i = 0; i < s.n; i++) {
         const int image = i % 4 - 1; /* some spheres are given by another of their images */
-        for (int d = 0; d < 3; d++) x[3 * i + d] = s.x[3 * i + d] + shift[d] + (turn == 2 && image < 2 ? image * edge[2][d] : 0.0);
+        for (int d = 0; d < 3; d++)
+          x[3 * i + d] = s.x[3 * i + d] + shift[d] + (turn == 2 && image < 2 ? image * edge[2][d] : 0.0);
       }
       assert_true(difference(&s, x, &how, s.U) < 1e-12);
     }
@@ -197,8 +201,8 @@ static void a_flip_of_the_box_changes_nothing(void **state)
   }
 }
 
-/* F.M G = G.M F, at any tolerance, to the rounding of doubles and of floats: spreading and interpolation are each other's
- * transpose. F.M F > 0. */
+/* F.M G = G.M F, at any tolerance, to the rounding of doubles and of floats: spreading and interpolation are each
+ * other's transpose. F.M F > 0. */
 static void the_matrix_is_symmetric_at_any_tolerance(void **state)
 {
   (void) state;
@@ -227,8 +231,8 @@ static void the_matrix_is_symmetric_at_any_tolerance(void **state)
   }
 }
 
-/* Cubic arrays: settling velocity, drag, and the spin mobility, which is exactly (1 - phi)/(8 pi a^3) until the spheres touch.
- * The engine's self is what it does to a sphere beyond its own 1/(6 pi a); for one sphere a cell that is all. */
+/* Cubic arrays: settling velocity, drag, and the spin mobility, which is exactly (1 - phi)/(8 pi a^3) until the spheres
+ * touch. The engine's self is what it does to a sphere beyond its own 1/(6 pi a); for one sphere a cell that is all. */
 static void cubic_arrays_settle_as_they_should(void **state)
 {
   (void) state;

@@ -1,4 +1,5 @@
-/* What the rule promises: predicted against measured error in random scenes, against a sum at a hundredth of the tolerance. */
+/* What the rule promises: predicted against measured error in random scenes, against a sum at a hundredth of the
+   tolerance. */
 #include "periodic.h"
 #include "predicted.h"
 
@@ -11,7 +12,8 @@ typedef struct {
   sd_ewald_box box;
 } scene;
 
-/* Volume fraction 0.01 to 0.5, radii 1 : 1 to 1 : 4, tolerances 1e-2 to 1e-9, boxes of any shape, some of them oblique */
+/* Volume fraction 0.01 to 0.5, radii 1 : 1 to 1 : 4, tolerances 1e-2 to 1e-9, boxes of any shape, some of them
+   oblique */
 static scene make(uint64_t *seed, int k)
 {
   scene s = {.tolerance = pow(10.0, -uniform(seed, 2.0, 9.0)), .box = {.periodic = 1}};
@@ -107,8 +109,8 @@ static void waves_that_end_at_a_band_have_the_sum_of_a_gaussian(void **state)
   }
 }
 
-/* 10^5 spheres at a volume fraction of 0.2: what a product takes grows with points of the grid, points of a window and near
- * spheres. Gaussians had grids of 84 and 168 points a side with as wide windows. */
+/* 10^5 spheres at a volume fraction of 0.2: what a product takes grows with points of the grid, points of a window and
+ * near spheres. Gaussians had grids of 84 and 168 points a side with as wide windows. */
 static void waves_that_end_at_a_band_need_half_the_grid(void **state)
 {
   (void) state;
@@ -136,8 +138,8 @@ static void grids_are_fast_to_transform(void **state)
   assert_true(grid[0] == 96 && grid[1] == 56 && grid[2] == 100);
 }
 
-/* Equal spheres with torques, thin and dense: velocities are right to the tolerance over F/(6 pi a), spins over T/(8 pi a^3), and
- * neither rule nor window is much better than asked. */
+/* Equal spheres with torques, thin and dense: velocities are right to the tolerance over F/(6 pi a), spins over T/(8 pi
+ * a^3), and neither rule nor window is much better than asked. */
 static void torques_are_no_better_than_asked(void **state)
 {
   (void) state;
@@ -232,7 +234,8 @@ static void unlike_spheres_keep_the_tolerance(void **state)
   all_keep_the_tolerance(scenes, 7);
 }
 
-/* Equal forces add up what the range cuts off; its mean is put back. Without that the error is three times the tolerance. */
+/* Equal forces add up what the range cuts off; its mean is put back. Without that the error is three times the
+   tolerance. */
 static void equal_forces_are_no_worse(void **state)
 {
   (void) state;

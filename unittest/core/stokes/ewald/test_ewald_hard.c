@@ -26,7 +26,8 @@ static void nobody_and_spheres_without_radius(void **state)
     }
 }
 
-/* One sphere in a large box: 1 - 1.7601188842 (phi)^(1/3) + phi, the rest of which is exact for this model (Hasimoto 1959). */
+/* One sphere in a large box: 1 - 1.7601188842 (phi)^(1/3) + phi, the rest of which is exact for this model (Hasimoto
+   1959). */
 static void one_sphere_has_hasimotos_correction(void **state)
 {
   (void) state;
@@ -62,7 +63,8 @@ static void one_sphere_in_an_open_box_feels_nothing(void **state)
 }
 
 /* u = M F by a loose and by a tight sum */
-static void agrees_with_a_tighter_sum(const double *x, const double *a, int n, const sd_ewald_box *box, double tolerance)
+static void agrees_with_a_tighter_sum(const double *x, const double *a, int n, const sd_ewald_box *box,
+                                      double tolerance)
 {
   uint64_t seed = 6;
   double F[6 * MOST], u[6 * MOST], v[6 * MOST], off = 0.0, scale = 0.0;
@@ -162,7 +164,8 @@ static void a_box_that_changes(void **state)
     periodic p;
     periodic_place(&p, x, a, NULL, N, 3, &how);
     assert_int_equal(sd_mobility_apply(&p.omega, F, u), SD_OK);
-    const sd_mobility_scene scene = {.how = {.width = 3, .ewald = &how}, .n = N, .n_all = p.n_all, .spheres = {p.x, p.a, p.w},
+    const sd_mobility_scene scene = {.how = {.width = 3, .ewald = &how}, .n = N, .n_all = p.n_all,
+                                     .spheres = {p.x, p.a, p.w},
                                      .world = {.ctx = &p, .refresh = periodic_refresh}};
     assert_int_equal(sd_mobility_place(&lasting, &sd_mobility_ewald, &scene), SD_OK);
     assert_int_equal(sd_mobility_apply(&lasting, F, v), SD_OK);

@@ -59,7 +59,8 @@ static void near_parts_agree(void **state)
 /* Spheres without an order on a brick, with all kinds of windows */
 static sd_spreading spheres_on_a_brick(const cloud *c, sd_spread_place *place, const sd_window *w, int terms, int width)
 {
-  sd_spreading s = {.n = N, .width = width, .terms = terms, .window = w, .place = place, .row = ROW, .layer = (long) ROW * SIDE};
+  sd_spreading s = {.n = N, .width = width, .terms = terms, .window = w, .place = place, .row = ROW,
+                    .layer = (long) ROW * SIDE};
   for (int i = 0; i < N; i++) {
     place[i].b = terms % 2 ? 0.0 : 0.1 * c->a[i];
     for (int d = 0; d < 3; d++) {
@@ -138,7 +139,8 @@ static void three_terms_do_for_equal_spheres_with_torques(void **state)
   for (int k = 0; k < 2; k++) free(brick[k]);
 }
 
-/* Kernels of floats, of each instruction set, against those of doubles: pairs, of which some overlap and two are at one point */
+/* Kernels of floats, of each instruction set, against those of doubles: pairs, of which some overlap and two are at one
+   point */
 static void near_parts_of_floats_are_those_of_doubles(void **state)
 {
   (void) state;
@@ -157,7 +159,8 @@ static void near_parts_of_floats_are_those_of_doubles(void **state)
           const sd_isa isa = k < 0 ? SD_ISA_PLAIN : sets[k];
           if (!sd_isa_supported(isa)) continue;
           sd_ewald_pairs p = {0};
-          sd_ewald_pairs_create(&p, &how, k == -2 ? SD_KERNELS_OF(sd_ewald, plain, isa) : SD_KERNELS_OF(sd_ewald_single, plain, isa),
+          sd_ewald_pairs_create(&p, &how, k == -2 ? SD_KERNELS_OF(sd_ewald, plain, isa) :
+                                SD_KERNELS_OF(sd_ewald_single, plain, isa),
                                 width);
           assert_int_equal(sd_ewald_pairs_place(&p, &spheres, &none, N - 20, N), SD_OK); /* the last are ghosts */
           assert_int_equal(sd_ewald_pairs_load(&p, N - 20, c.F, c.F + width * (N - 20), NULL, NULL), SD_OK);

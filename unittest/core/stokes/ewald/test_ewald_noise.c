@@ -45,8 +45,8 @@ static void matrix(periodic *p, sd_status (*apply)(void *, const double *, doubl
   free(F);
 }
 
-/* Covariance of what white noise on the grid makes of the spheres, one number of it after the other, against the difference of the
- * whole product and the rest. */
+/* Covariance of what white noise on the grid makes of the spheres, one number of it after the other, against the
+ * difference of the whole product and the rest. */
 static void waves_have_exactly_the_covariance_of_their_product(void **state)
 {
   (void) state;
@@ -81,7 +81,8 @@ static void waves_have_exactly_the_covariance_of_their_product(void **state)
       for (at.y = 0; at.y < how.grid[1]; at.y++)
         for (at.z = 0; at.z < how.grid[2]; at.z++)
           for (at.component = 0; at.component < 3; at.component++) {
-            assert_int_equal(sd_grid_convolve_values(&waves.grid, fill_one, &at, sd_wave_multiply_root, &waves.wave), SD_OK);
+            assert_int_equal(sd_grid_convolve_values(&waves.grid, fill_one, &at, sd_wave_multiply_root, &waves.wave),
+                             SD_OK);
             kernels->interpolate(&waves.spreading);
             for (int k = 0; k < n; k++)
               for (int q = 0; q < n; q++) C[n * k + q] += u[k] * u[q];
@@ -95,8 +96,8 @@ static void waves_have_exactly_the_covariance_of_their_product(void **state)
   }
 }
 
-/* Smallest eigenvalue of D^1/2 (near part) D^1/2 above `least`? The splitting is that of a large box so filled, where the rule has its
- * limit. */
+/* Smallest eigenvalue of D^1/2 (near part) D^1/2 above `least`? The splitting is that of a large box so filled, where
+ * the rule has its limit. */
 static void check_near_part(const char *scene_name, const scene *s, double side, double least)
 {
   const sd_ewald_box box = {.periodic = 1, .edge = {side, side, side}};
@@ -134,7 +135,8 @@ static void near_part_is_positive_wherever_spheres_stand(void **state)
   uint64_t seed = 3;
   scene random = scene_create(80);
   side = cbrt(80 / 0.25);
-  for (int i = 0; i < 80; i++) scene_set(&random, i, uniform(&seed, 0, side), uniform(&seed, 0, side), uniform(&seed, 0, side), 1.0, 1.0);
+  for (int i = 0; i < 80; i++) scene_set(&random, i, uniform(&seed, 0, side), uniform(&seed, 0, side),
+                                         uniform(&seed, 0, side), 1.0, 1.0);
   check_near_part("overlaps at random", &random, side, 0.02);
   for (int i = 0; i < 80; i++) random.a[i] = i % 8 ? 0.4 : 1.2;
   check_near_part("radii 1 to 3, overlaps at random", &random, side, 0.02);
@@ -147,8 +149,8 @@ static void near_part_is_positive_wherever_spheres_stand(void **state)
   scene_free(&random);
 }
 
-/* Of equal spheres the whole sum has the wave s^2/k^2, s = sin(ka)/(ka), and what is drawn H/k^2: neither that nor the rest is
- * negative at any wave, wherever the spheres stand. A Gaussian's H is larger than s^2 where s is 0, by 6e-3. */
+/* Of equal spheres the whole sum has the wave s^2/k^2, s = sin(ka)/(ka), and what is drawn H/k^2: neither that nor the
+ * rest is negative at any wave, wherever the spheres stand. A Gaussian's H is larger than s^2 where s is 0, by 6e-3. */
 static void no_wave_of_equal_spheres_is_negative(void **state)
 {
   (void) state;

@@ -78,7 +78,8 @@ static void open_boxes_agree_with_all_pairs(void **state)
       const sd_ewald_sizes sizes = periodic_sizes(s.a, N);
       sd_ewald how;
       assert_int_equal(sd_ewald_choose(&s.box, &sizes, c->width, pow(10.0, -digits), &how), SD_OK);
-      const sd_mobility_scene scene = {.how = {.width = c->width, .ewald = &how}, .n = N, .n_all = N, .spheres = spheres};
+      const sd_mobility_scene scene = {.how = {.width = c->width, .ewald = &how}, .n = N, .n_all = N,
+                                       .spheres = spheres};
       sd_mobility m = {0};
       assert_int_equal(sd_mobility_place(&m, &sd_mobility_ewald, &scene), SD_OK);
       assert_int_equal(sd_mobility_apply(&m, s.F, u), SD_OK);
@@ -89,7 +90,8 @@ static void open_boxes_agree_with_all_pairs(void **state)
   }
 }
 
-/* Equal forces: the cloud is far faster than F/(6 pi a), and so is the error; the tolerance holds for its velocities. */
+/* Equal forces: the cloud is far faster than F/(6 pi a), and so is the error; the tolerance holds for its
+   velocities. */
 static void a_cloud_that_settles_has_the_right_velocities(void **state)
 {
   (void) state;
@@ -140,7 +142,8 @@ static void a_cloud_that_moves_as_a_whole_keeps_its_tables(void **state)
   sd_mobility m = {0};
   for (int k = 0; k < 2; k++) {
     assert_int_equal(sd_ewald_choose(&s.box, &sizes, c->width, 0.9e-5, how + k), SD_OK);
-    const sd_mobility_scene scene = {.how = {.width = c->width, .ewald = how + k}, .n = N, .n_all = N, .spheres = {s.x, s.a, s.w}};
+    const sd_mobility_scene scene = {.how = {.width = c->width, .ewald = how + k}, .n = N, .n_all = N,
+                                     .spheres = {s.x, s.a, s.w}};
     assert_int_equal(sd_mobility_place(&m, &sd_mobility_ewald, &scene), SD_OK);
     assert_int_equal(sd_mobility_apply(&m, s.F, u[k]), SD_OK);
     for (int d = 0; d < 3; d++) lo[d] = INFINITY, hi[d] = -INFINITY;
@@ -165,9 +168,11 @@ static void a_box_above_a_wall_goes_along_it_alone(void **state)
   assert_int_equal(sd_ewald_box_around(&box, 2, lo[0], hi[0], 1.0), 1);
   const sd_ewald_box first = box;
   assert_int_equal(sd_ewald_box_around(&box, 2, lo[1], hi[1], 1.0), 0);
-  assert_true(fabs(box.origin[0] - first.origin[0] - 30.0) < 1e-12 && fabs(box.origin[1] - first.origin[1] + 7.0) < 1e-12);
+  assert_true(fabs(box.origin[0] - first.origin[0] - 30.0) < 1e-12 &&
+              fabs(box.origin[1] - first.origin[1] + 7.0) < 1e-12);
   assert_true(box.origin[2] == first.origin[2]);
-  sd_ewald how[3] = {{.box = first, .images.wall = {.sign = 1, .axis = 2}}, {.box = box, .images.wall = {.sign = 1, .axis = 2}}};
+  sd_ewald how[3] = {{.box = first, .images.wall = {.sign = 1, .axis = 2}},
+                     {.box = box, .images.wall = {.sign = 1, .axis = 2}}};
   assert_true(sd_ewald_same_tables(how, how + 1));
   how[2] = how[1];
   how[2].box.origin[2] += 0.1;
@@ -207,8 +212,8 @@ static void waves_end_at_a_band(void **state)
   assert_true(how.band > 0.0 && how.grid[0] <= 84 && how.range < 13.5);
 }
 
-/* Random forces move all spheres of an open box together, the faster the more there are. A window of 8 points mistook that
- * by the whole tolerance at 10^5 spheres and 1e-6; at 1e-3 a narrower window of 5 points does up to 10^6. */
+/* Random forces move all spheres of an open box together, the faster the more there are. A window of 8 points mistook
+ * that by the whole tolerance at 10^5 spheres and 1e-6; at 1e-3 a narrower window of 5 points does up to 10^6. */
 static void common_flow_takes_wider_windows(void **state)
 {
   (void) state;
@@ -227,8 +232,8 @@ static void common_flow_takes_wider_windows(void **state)
   }
 }
 
-/* Relative to the flow that equal forces make a sum to 1e-3 is right to 4e-5. A window whose error of a constant flow is larger
- * has twice that. */
+/* Relative to the flow that equal forces make a sum to 1e-3 is right to 4e-5. A window whose error of a constant flow
+ * is larger has twice that. */
 static void equal_forces_make_no_larger_error(void **state)
 {
   (void) state;

@@ -32,7 +32,8 @@ static cloud make(const layout *l)
 {
   cloud c = {0};
   uint64_t seed = 12;
-  sd_ewald_box box = {.periodic = l->periodic, .origin = {-2, 1, 3}, .edge = {15, 13, 14}, .tilt = {l->tilt, -l->tilt, 0.5 * l->tilt}};
+  sd_ewald_box box = {.periodic = l->periodic, .origin = {-2, 1, 3}, .edge = {15, 13, 14},
+                      .tilt = {l->tilt, -l->tilt, 0.5 * l->tilt}};
   for (int i = 0; i < N; i++) {
     for (int d = 0; d < 3; d++) c.x[3 * i + d] = box.origin[d] + uniform(&seed, 0, 1) * box.edge[d];
     c.a[i] = i % 7 == 6 ? 0.0 : uniform(&seed, 0.5, 1.5); /* some take no part */
@@ -46,7 +47,8 @@ static cloud make(const layout *l)
   return c;
 }
 
-/* Ours: by place along one direction, or dealt in turn, so that bricks of all ranks overlap everywhere. The last of 4 ranks has none. */
+/* Ours: by place along one direction, or dealt in turn, so that bricks of all ranks overlap everywhere. The last of 4
+   ranks has none. */
 static int owner(const cloud *c, const layout *l, int i, int ranks)
 {
   const int parts = ranks == 4 ? 3 : ranks;

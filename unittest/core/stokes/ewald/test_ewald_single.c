@@ -1,5 +1,5 @@
-/* Sums of floats against those of doubles: the same digits to the tolerance wherever the spheres are, and a matrix as symmetric as
- * a solve needs. */
+/* Sums of floats against those of doubles: the same digits to the tolerance wherever the spheres are, and a matrix as
+ * symmetric as a solve needs. */
 #include "periodic.h"
 
 enum { MOST = 300 };
@@ -66,7 +66,8 @@ static void same_digits_in_box(const scene *s, int single)
       product(s, width, tolerance, 0, F, v);
       for (int i = 0; i < width * s->n; i++) assert_true(isfinite(u[i]));
       const double off = difference(s, width, F, u, v);
-      if (getenv("STOKESDYN_SHOW")) printf("%s box, width %d, 1e-%d: %.1e\n", s->box.periodic ? "periodic" : "open", width, digits, off);
+      if (getenv("STOKESDYN_SHOW")) printf("%s box, width %d, 1e-%d: %.1e\n", s->box.periodic ? "periodic" : "open",
+                                           width, digits, off);
       assert_true(off < 0.1 * tolerance && off < 2e-6);
       if (single) assert_true(off > 0.0);
     }
@@ -150,7 +151,8 @@ static void forces_of_any_size(void **state)
   }
 }
 
-/* F' M F'' = F'' M F', to the rounding of floats: conjugate gradients go on until far below any tolerance that has them. */
+/* F' M F'' = F'' M F', to the rounding of floats: conjugate gradients go on until far below any tolerance that has
+   them. */
 static void products_are_reciprocal(void **state)
 {
   (void) state;

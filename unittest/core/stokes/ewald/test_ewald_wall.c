@@ -10,8 +10,10 @@
 
 enum { N = 150 };
 
-/* (1) of sd_image_wave.h for a Gaussian in closed form, in the form of sd_wall.h: with the ends of both spheres, sorted by f, R and z */
-static void smooth_part(const sd_filter *filter, const double xi[3], double a, const double xj[3], double b, double c[5])
+/* (1) of sd_image_wave.h for a Gaussian in closed form, in the form of sd_wall.h: with the ends of both spheres, sorted
+   by f, R and z */
+static void smooth_part(const sd_filter *filter, const double xi[3], double a, const double xj[3], double b,
+                        double c[5])
 {
   const double g = xi[2], h = xj[2], x = xi[0] - xj[0], y = xi[1] - xj[1], z = g + h;
   const double A = a * a / 6.0, B = b * b / 6.0, ref = filter->a_ref * filter->a_ref / 6.0;
@@ -84,7 +86,8 @@ static void the_smooth_part_is_symmetric(void **state)
 }
 
 /* u += the image of w F of sphere j less its smooth part, in the axes of the wall */
-static void add_near_image(const sd_filter *filter, const double *xi, double a, const double *xj, double b, const double *F, double *u)
+static void add_near_image(const sd_filter *filter, const double *xi, double a, const double *xj, double b,
+                           const double *F, double *u)
 {
   sd_wall_pair pair = sd_wall_pair_of(xi, a, xj, b);
   double c[5];
@@ -93,8 +96,8 @@ static void add_near_image(const sd_filter *filter, const double *xi, double a, 
   sd_wall_pair_add(&pair, 3, F, u);
 }
 
-/* Of each instruction set, for radii that are alike and others, with ghosts, against sums over all pairs within the range of the
- * images in closed form */
+/* Of each instruction set, for radii that are alike and others, with ghosts, against sums over all pairs within the
+ * range of the images in closed form */
 static void near_images_are_images_less_their_smooth_part(void **state)
 {
   (void) state;

@@ -1,4 +1,5 @@
-/* Hard cases for the solver: every one of them has to give the answer or say why not. And warm starts and Ritz values. */
+/* Hard cases for the solver: every one of them has to give the answer or say why not. And warm starts and Ritz
+   values. */
 #include "clouds.h"
 
 #include "in_clumps.h"
@@ -8,7 +9,8 @@
 static const double A = 0.7, ETA = 1.3, U = 0.9;
 static const sd_law RPY = {.tensor = SD_TENSOR_RPY};
 
-/* 10 000 clumps of 2 to 12 spheres that overlap, radii 1:100, some wholly hidden, to 1e-6; by the diagonal and by blocks. */
+/* 10 000 clumps of 2 to 12 spheres that overlap, radii 1:100, some wholly hidden, to 1e-6; by the diagonal and by
+   blocks. */
 static void ten_thousand_random_clumps(void **state)
 {
   (void) state;
@@ -44,7 +46,8 @@ static void ten_thousand_random_clumps(void **state)
   assert_true(most_blocks <= 2);
 }
 
-/* Forces for uniform velocity of a large sphere at rest in the middle and two small ones beside it; the one moves along x. */
+/* Forces for uniform velocity of a large sphere at rest in the middle and two small ones beside it; the one moves along
+   x. */
 static void forces_at(double x, double F[9])
 {
   scene s = scene_create(3);
@@ -63,8 +66,8 @@ static void forces_at(double x, double F[9])
   scene_free(&s);
 }
 
-/* Along a path through contact (R = 2.6), overlap and the inside (R < 1.2) no force jumps: differences stay below a fixed slope
- * times the step. Around the two places where the formula changes the steps are 1e-12 wide. */
+/* Along a path through contact (R = 2.6), overlap and the inside (R < 1.2) no force jumps: differences stay below a
+ * fixed slope times the step. Around the two places where the formula changes the steps are 1e-12 wide. */
 static void forces_are_continuous_along_a_path(void **state)
 {
   (void) state;
@@ -117,8 +120,9 @@ static void all_spheres_at_one_point(void **state)
   }
 }
 
-/* Ten equal spheres at each of four points in a cloud. M is singular, and so nearly are its preconditioners: they blow up the
- * rounding along directions that no velocity asks for. The answer must come all the same; different velocities must not pass. */
+/* Ten equal spheres at each of four points in a cloud. M is singular, and so nearly are its preconditioners: they blow
+ * up the rounding along directions that no velocity asks for. The answer must come all the same; different velocities
+ * must not pass. */
 static void coincident_spheres_with_preconditioners(void **state)
 {
   (void) state;
@@ -213,7 +217,8 @@ static void preconditioner_of_another_time(void **state)
   scene_free(&s);
 }
 
-/* A guess within the tolerance costs one product and is not touched; a rough one saves iterations; a wild one does no harm. */
+/* A guess within the tolerance costs one product and is not touched; a rough one saves iterations; a wild one does no
+   harm. */
 static void warm_starts(void **state)
 {
   (void) state;
@@ -254,8 +259,8 @@ static void warm_starts(void **state)
   scene_free(&s);
 }
 
-/* Extreme eigenvalues of the mobility scaled to unit diagonal, from a solve: dense eigenvalues of the touching chains and cubes.
- * Random velocities, which hold every eigenvector. */
+/* Extreme eigenvalues of the mobility scaled to unit diagonal, from a solve: dense eigenvalues of the touching chains
+ * and cubes. Random velocities, which hold every eigenvector. */
 static void ritz_values_are_the_extreme_eigenvalues(void **state)
 {
   (void) state;

@@ -1,5 +1,5 @@
-/* Noise of covariance M by Lanczos's process: identities that hold after any number of products, and the variance of every single
- * mode at the default tolerance, without the scatter of sampling. */
+/* Noise of covariance M by Lanczos's process: identities that hold after any number of products, and the variance of
+ * every single mode at the default tolerance, without the scatter of sampling. */
 #include "clouds.h"
 
 #include "sd_noise.h"
@@ -8,8 +8,8 @@
 #include <string.h>
 
 /* LAPACK: eigenvalues w, and eigenvectors, the rows of A then */
-void dsyev_(const char *job, const char *uplo, const int *n, double *A, const int *lda, double *w, double *work, const int *lwork,
-            int *info, size_t, size_t);
+void dsyev_(const char *job, const char *uplo, const int *n, double *A, const int *lda, double *w, double *work,
+            const int *lwork, int *info, size_t, size_t);
 
 /* What noise_tolerance 0.01 asks of the step in the energy norm */
 static const double BY_DEFAULT = 0.01 / 3.0;
@@ -128,8 +128,8 @@ static void noise_of_noise_is_the_product(void **state)
   scene_free(&s);
 }
 
-/* The bias of each mode k of A = P M P, eigenvalue l and vector v: mean of (v.P y)^2/l - (v.w)^2, over the same w, so that what is
- * exact has none of the scatter of w. The largest of all modes, and the most products of a draw. */
+/* The bias of each mode k of A = P M P, eigenvalue l and vector v: mean of (v.P y)^2/l - (v.w)^2, over the same w, so
+ * that what is exact has none of the scatter of w. The largest of all modes, and the most products of a draw. */
 typedef struct {
   double worst;
   int products;
@@ -212,8 +212,8 @@ static void every_mode_of_overlapping_chains_is_right(void **state)
   assert_true(fabs(bias_in(chains(10), BY_DEFAULT, 60).worst) < 0.015);
 }
 
-/* What the mean of variances hides: so few products as the usual rule takes (a step of y of 1e-3) leave bonds a tenth and more too
- * hot. */
+/* What the mean of variances hides: so few products as the usual rule takes (a step of y of 1e-3) leave bonds a tenth
+ * and more too hot. */
 static void too_few_products_make_slow_modes_hot(void **state)
 {
   (void) state;

@@ -94,7 +94,8 @@ static void gradients_give_the_model_drag(void **state)
   }
 }
 
-/* The residual that both solvers report is |D(s - MF)|/|Ds| of the F that they return. Unequal radii, overlaps, random velocities. */
+/* The residual that both solvers report is |D(s - MF)|/|Ds| of the F that they return. Unequal radii, overlaps, random
+   velocities. */
 static void reported_residual_is_the_definition(void **state)
 {
   (void) state;
@@ -258,7 +259,8 @@ static void out_of_iterations_says_how_far_it_came(void **state)
   assert_true(o.report.residual > 1e-10 && o.report.residual < 1.0);
 }
 
-/* Smoothing: more iterations never give a larger residual. Plain conjugate gradients would fail this at iteration 10 of 8^3 spheres. */
+/* Smoothing: more iterations never give a larger residual. Plain conjugate gradients would fail this at iteration 10 of
+   8^3 spheres. */
 static void residual_only_falls(void **state)
 {
   (void) state;
@@ -272,8 +274,8 @@ static void residual_only_falls(void **state)
   scene_free(&s);
 }
 
-/* A function of the caller that fails at its k-th call ends the solve there: with its status, without another call of any of them,
- * and with forces that are finite. As many calls as the solve makes are tried, then it converges. */
+/* A function of the caller that fails at its k-th call ends the solve there: with its status, without another call of
+ * any of them, and with forces that are finite. As many calls as the solve makes are tried, then it converges. */
 typedef struct {
   scene *s;
   int calls, fails_at, after;
@@ -402,7 +404,8 @@ static void sphere_without_drag_takes_no_part(void **state)
   }
 }
 
-/* Forces are reciprocal: for two velocity fields, F1.s2 = F2.s1; and dissipate: F.s > 0. Radii 1:30, two viscosities. */
+/* Forces are reciprocal: for two velocity fields, F1.s2 = F2.s1; and dissipate: F.s > 0. Radii 1:30, two
+   viscosities. */
 static void resistance_is_symmetric_and_dissipates(void **state)
 {
   (void) state;

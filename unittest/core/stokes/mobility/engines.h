@@ -1,5 +1,5 @@
-/* The engines that climb the ladder of test_ladder.c: one row each, at the end of this file. A new engine is a function that says
- * with what it is placed, and its row. */
+/* The engines that climb the ladder of test_ladder.c: one row each, at the end of this file. A new engine is a function
+ * that says with what it is placed, and its row. */
 #ifndef ENGINES_H
 #define ENGINES_H
 
@@ -28,7 +28,8 @@ enum {
 
 struct climber;
 
-/* An engine with how it is asked: an open box goes along with the spheres. reach: how far ghosts stand around those of a rank */
+/* An engine with how it is asked: an open box goes along with the spheres. reach: how far ghosts stand around those of
+   a rank */
 typedef struct {
   const struct climber *row;
   const sd_mobility_engine *engine;
@@ -47,11 +48,11 @@ typedef struct climber {
   /* fills law, engine, reach and splitting */
   void (*choose)(how *h, const cast *s);
   unsigned can;
-  /* of a velocity over that of the pushed sphere alone; and what rounding adds where sums are of floats, else 0, and the splitting
-   * must say the same */
+  /* of a velocity over that of the pushed sphere alone; and what rounding adds where sums are of floats, else 0, and
+   * the splitting must say the same */
   double tolerance, rounding;
-  /* periodic box: edge and tilts; 0: none. wall: z = -0.3, the fluid is above; with a box this is periodic along it alone. height:
-   * of a second wall above that one; 0: none. no_flux: nothing flows along both */
+  /* periodic box: edge and tilts; 0: none. wall: z = -0.3, the fluid is above; with a box this is periodic along it
+   * alone. height: of a second wall above that one; 0: none. no_flux: nothing flows along both */
   double edge, tilt[3];
   int wall;
   double height;
@@ -98,8 +99,8 @@ static inline double tolerance_of(const climber *row)
   return 0.1 * row->tolerance;
 }
 
-/* In a periodic box, and with two levels, sums are split as for so many times as many spheres, so that their ranges are shorter than
- * the box. */
+/* In a periodic box, and with two levels, sums are split as for so many times as many spheres, so that their ranges are
+ * shorter than the box. */
 static inline sd_ewald_sizes sizes_of(const climber *row, const cast *s)
 {
   sd_ewald_sizes sizes = periodic_sizes(s->a, s->n);
@@ -153,7 +154,8 @@ static void choose_positive(how *h, const cast *s)
   const sd_ewald_sizes sizes = sizes_of(h->row, s);
   h->engine = &sd_mobility_ewald;
   h->box = box_of(h->row, s);
-  assert_int_equal(sd_ewald_choose_positive(&h->box, &sizes, s->width, tolerance_of(h->row), SD_EWALD_POSITIVE, &h->first),
+  assert_int_equal(sd_ewald_choose_positive(&h->box, &sizes, s->width, tolerance_of(h->row), SD_EWALD_POSITIVE,
+                                            &h->first),
                    SD_OK);
   h->reach = h->first.reach;
 }
@@ -191,8 +193,8 @@ typedef struct {
   sd_mobility m;
 } placed;
 
-/* On a rank of those among which the spheres are dealt in turn, the last one without any where there are more than two; or on one
- * alone, ranks 1 */
+/* On a rank of those among which the spheres are dealt in turn, the last one without any where there are more than two;
+ * or on one alone, ranks 1 */
 static inline void place_on(placed *p, const climber *row, const cast *s, rank *r)
 {
   const int parts = r->ranks > 2 ? r->ranks - 1 : r->ranks;
@@ -267,46 +269,51 @@ static inline void free_alone(alone *e)
 /* --- the table --- */
 
 static const climber climbers[] = {
-    {.name = "all pairs", .choose = choose_all_pairs, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR, .tolerance = 1e-13, .ratio = 1},
-    {.name = "all pairs, floats", .choose = choose_floats, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR, .tolerance = 1e-5,
-     .rounding = 1e-6, .ratio = 1},
-    {.name = "all pairs, wall", .choose = choose_all_pairs, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR, .tolerance = 1e-13,
-     .wall = 1, .ratio = 1},
-    {.name = "list, cut-off", .choose = choose_list, .can = OVERLAPS | TORQUES | RANKS, .tolerance = 1e-13, .cut = 9, .ratio = 1},
-    {.name = "list, taper", .choose = choose_list, .can = OVERLAPS | TORQUES | POSITIVE | RANKS, .tolerance = 1e-13, .cut = 9,
-     .taper = SD_TAPER_WENDLAND, .ratio = 1},
-    {.name = "list, wall", .choose = choose_list, .can = OVERLAPS | TORQUES | RANKS, .tolerance = 1e-13, .wall = 1, .cut = 9, .ratio = 1},
-    {.name = "Ewald, cube", .choose = choose_one_level, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR, .tolerance = 1e-5, .edge = 13,
-     .ratio = 1},
-    {.name = "Ewald, oblique", .choose = choose_one_level, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR, .tolerance = 1e-5,
-     .edge = 13, .tilt = {4, -3, 2}, .ratio = 1},
-    {.name = "Ewald, noise", .choose = choose_positive, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR | DIVIDES, .tolerance = 1e-5,
-     .edge = 13, .ratio = 1},
-    {.name = "Ewald, floats", .choose = choose_one_level, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR, .tolerance = 1e-3,
-     .rounding = 1e-6, .edge = 13, .ratio = 1},
-    {.name = "Ewald, open", .choose = choose_one_level, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR, .tolerance = 1e-3,
-     .rounding = 1e-6, .ratio = 1},
-    {.name = "Ewald, wall", .choose = choose_one_level, .can = OVERLAPS | POSITIVE | RANKS | FAR, .tolerance = 1e-3, .wall = 1, .ratio = 1},
-    {.name = "two levels, cube", .choose = choose_two_levels, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR, .tolerance = 1e-4,
-     .edge = 60, .ratio = 20},
-    {.name = "two levels, open", .choose = choose_two_levels, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR, .tolerance = 3e-3,
-     .ratio = 20},
-    {.name = "slab, floor", .choose = choose_slab, .can = OVERLAPS | POSITIVE | RANKS | FAR, .tolerance = 1e-5, .edge = 13, .wall = 1,
-     .ratio = 1},
-    {.name = "slab, slit", .choose = choose_slab, .can = OVERLAPS | POSITIVE | RANKS | FAR, .tolerance = 1e-5, .edge = 13, .wall = 1,
-     .height = 16, .ratio = 1},
-    {.name = "slab, no flux", .choose = choose_slab, .can = OVERLAPS | POSITIVE | RANKS | FAR, .tolerance = 1e-5, .edge = 13, .wall = 1,
-     .height = 16, .no_flux = 1, .ratio = 1},
-    {.name = "shells, all pairs", .choose = choose_all_pairs, .can = TORQUES | POSITIVE | FAR, .tolerance = 2e-3, .ratio = 1, .shell = 12},
-    {.name = "shells, wall", .choose = choose_all_pairs, .can = TORQUES | POSITIVE | FAR, .tolerance = 2e-3, .wall = 1, .ratio = 1,
-     .shell = 12},
-    {.name = "shells, Ewald, cube", .choose = choose_one_level, .can = TORQUES | POSITIVE | FAR, .tolerance = 2e-3, .rounding = 1e-6, .edge = 13, .ratio = 1,
-     .shell = 12},
-    {.name = "shells, Ewald, wall", .choose = choose_one_level, .can = TORQUES | POSITIVE | FAR, .tolerance = 2e-3, .wall = 1, .ratio = 1,
-     .shell = 12},
+    {.name = "all pairs", .choose = choose_all_pairs, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR,
+     .tolerance = 1e-13, .ratio = 1},
+    {.name = "all pairs, floats", .choose = choose_floats, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR,
+     .tolerance = 1e-5, .rounding = 1e-6, .ratio = 1},
+    {.name = "all pairs, wall", .choose = choose_all_pairs, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR,
+     .tolerance = 1e-13, .wall = 1, .ratio = 1},
+    {.name = "list, cut-off", .choose = choose_list, .can = OVERLAPS | TORQUES | RANKS,
+     .tolerance = 1e-13, .cut = 9, .ratio = 1},
+    {.name = "list, taper", .choose = choose_list, .can = OVERLAPS | TORQUES | POSITIVE | RANKS,
+     .tolerance = 1e-13, .cut = 9, .taper = SD_TAPER_WENDLAND, .ratio = 1},
+    {.name = "list, wall", .choose = choose_list, .can = OVERLAPS | TORQUES | RANKS,
+     .tolerance = 1e-13, .wall = 1, .cut = 9, .ratio = 1},
+    {.name = "Ewald, cube", .choose = choose_one_level, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR,
+     .tolerance = 1e-5, .edge = 13, .ratio = 1},
+    {.name = "Ewald, oblique", .choose = choose_one_level, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR,
+     .tolerance = 1e-5, .edge = 13, .tilt = {4, -3, 2}, .ratio = 1},
+    {.name = "Ewald, noise", .choose = choose_positive, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR | DIVIDES,
+     .tolerance = 1e-5, .edge = 13, .ratio = 1},
+    {.name = "Ewald, floats", .choose = choose_one_level, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR,
+     .tolerance = 1e-3, .rounding = 1e-6, .edge = 13, .ratio = 1},
+    {.name = "Ewald, open", .choose = choose_one_level, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR,
+     .tolerance = 1e-3, .rounding = 1e-6, .ratio = 1},
+    {.name = "Ewald, wall", .choose = choose_one_level, .can = OVERLAPS | POSITIVE | RANKS | FAR,
+     .tolerance = 1e-3, .wall = 1, .ratio = 1},
+    {.name = "two levels, cube", .choose = choose_two_levels, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR,
+     .tolerance = 1e-4, .edge = 60, .ratio = 20},
+    {.name = "two levels, open", .choose = choose_two_levels, .can = OVERLAPS | TORQUES | POSITIVE | RANKS | FAR,
+     .tolerance = 3e-3, .ratio = 20},
+    {.name = "slab, floor", .choose = choose_slab, .can = OVERLAPS | POSITIVE | RANKS | FAR,
+     .tolerance = 1e-5, .edge = 13, .wall = 1, .ratio = 1},
+    {.name = "slab, slit", .choose = choose_slab, .can = OVERLAPS | POSITIVE | RANKS | FAR,
+     .tolerance = 1e-5, .edge = 13, .wall = 1, .height = 16, .ratio = 1},
+    {.name = "slab, no flux", .choose = choose_slab, .can = OVERLAPS | POSITIVE | RANKS | FAR,
+     .tolerance = 1e-5, .edge = 13, .wall = 1, .height = 16, .no_flux = 1, .ratio = 1},
+    {.name = "shells, all pairs", .choose = choose_all_pairs, .can = TORQUES | POSITIVE | FAR,
+     .tolerance = 2e-3, .ratio = 1, .shell = 12},
+    {.name = "shells, wall", .choose = choose_all_pairs, .can = TORQUES | POSITIVE | FAR,
+     .tolerance = 2e-3, .wall = 1, .ratio = 1, .shell = 12},
+    {.name = "shells, Ewald, cube", .choose = choose_one_level, .can = TORQUES | POSITIVE | FAR,
+     .tolerance = 2e-3, .rounding = 1e-6, .edge = 13, .ratio = 1, .shell = 12},
+    {.name = "shells, Ewald, wall", .choose = choose_one_level, .can = TORQUES | POSITIVE | FAR,
+     .tolerance = 2e-3, .wall = 1, .ratio = 1, .shell = 12},
     /* near a floor a shell differs from a sphere of one point by its model, and so do all its images */
-    {.name = "shells, floor", .choose = choose_slab, .can = POSITIVE | FAR, .tolerance = 1e-2, .edge = 13, .wall = 1, .ratio = 1,
-     .shell = 12},
+    {.name = "shells, floor", .choose = choose_slab, .can = POSITIVE | FAR,
+     .tolerance = 1e-2, .edge = 13, .wall = 1, .ratio = 1, .shell = 12},
 };
 enum { CLIMBERS = sizeof(climbers) / sizeof(climbers[0]) };
 

@@ -1,5 +1,6 @@
-/* One ladder of tests for every engine of engines.h: the same rungs t000 ... t120 by name, and a table engine x rung with the error of
- * each, or why an engine does not claim it. All errors are those of velocities over that of the pushed sphere alone. */
+/* One ladder of tests for every engine of engines.h: the same rungs t000 ... t120 by name, and a table engine x rung
+ * with the error of each, or why an engine does not claim it. All errors are those of velocities over that of the
+ * pushed sphere alone. */
 #include "engines.h"
 
 #include "closed_forms.h"
@@ -134,7 +135,8 @@ static double *matrix_of_spheres(const climber *row, const cast *s)
   return A;
 }
 
-/* The same of spheres that are rigid shells of points: (K^T M^-1 K)^-1, M of all points with what each shell has in addition */
+/* The same of spheres that are rigid shells of points: (K^T M^-1 K)^-1, M of all points with what each shell has in
+   addition */
 static double *matrix_of_shells(const climber *row, const cast *s)
 {
   sd_multiblob m;
@@ -169,7 +171,8 @@ static double *matrix_of_shells(const climber *row, const cast *s)
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
       double sum = 0.0;
-      for (int k = 0; k < N; k++) sum += K[(size_t) i * (size_t) N + (size_t) k] * L[(size_t) j * (size_t) N + (size_t) k];
+      for (int k = 0; k < N; k++) sum += K[(size_t) i * (size_t) N + (size_t) k] * L[(size_t) j * (size_t) N + (size_t)
+        k];
       R[(size_t) i * (size_t) n + (size_t) j] = sum;
     }
   assert_int_equal(sd_cholesky(n, R), SD_OK);
@@ -178,11 +181,13 @@ static double *matrix_of_shells(const climber *row, const cast *s)
   return R;
 }
 
-/* Every number times the drags of both its spheres: 1 on the diagonal of lone ones. Rows and columns of the width of s */
+/* Every number times the drags of both its spheres: 1 on the diagonal of lone ones. Rows and columns of the width of
+   s */
 static double *matrix(const climber *row, const cast *s)
 {
   const int n = numbers_of(s), step = row->shell ? 6 : s->width, N = step * s->n;
-  double *A = row->shell ? matrix_of_shells(row, s) : matrix_of_spheres(row, s), *S = malloc(sizeof(double) * (size_t) n * (size_t) n);
+  double *A = row->shell ? matrix_of_shells(row, s) : matrix_of_spheres(row, s),
+         *S = malloc(sizeof(double) * (size_t) n * (size_t) n);
   for (int p = 0; p < n; p++)
     for (int q = 0; q < n; q++) {
       const int P = step * (p / s->width) + p % s->width, Q = step * (q / s->width) + q % s->width;
@@ -217,7 +222,8 @@ static void expected_in_slab(const climber *row, const cast *s, int i, int j, do
   floor_tensor(above[0], s->a[i], above[1], s->a[j], eta, row->edge, i != j, M);
 }
 
-/* What a pair should be in the boundary of the row, velocity of i from the force on j; i = j: of one with its own images, in a box */
+/* What a pair should be in the boundary of the row, velocity of i from the force on j; i = j: of one with its own
+   images, in a box */
 static void expected(const climber *row, const cast *s, int i, int j, double M[9])
 {
   double r[3], edge[3][3], B[9];
@@ -267,15 +273,17 @@ static double alone_in_cube(double a_over_L)
   return 1.0 - 2.837297479480619 * a_over_L + 4.0 / 3.0 * SD_PI * pow(a_over_L, 3);
 }
 
-/* What a lone sphere does in each direction under a force or a torque, over what it does in free space. Wall: Swan & Brady 2007 and
- * for torques Jeffrey & Onishi 1984 */
+/* What a lone sphere does in each direction under a force or a torque, over what it does in free space. Wall: Swan &
+ * Brady 2007 and for torques Jeffrey & Onishi 1984 */
 static double alone_at(const climber *row, const cast *s, int i, int number)
 {
   const double a = s->a[i], h = a / (s->x[3 * i + 2] - wall_at);
-  if (row->edge > 0.0) return number < 3 ? alone_in_cube(a / row->edge) : 1.0 - 4.0 / 3.0 * SD_PI * pow(a / row->edge, 3);
+  if (row->edge > 0.0) return number < 3 ? alone_in_cube(a / row->edge) : 1.0 - 4.0 / 3.0 * SD_PI *
+      pow(a / row->edge, 3);
   if (!row->wall) return 1.0;
   if (number >= 3) return 1.0 - (number == 5 ? 1.0 / 8.0 : 5.0 / 16.0) * pow(h, 3);
-  return number == 2 ? 1.0 - (9.0 * h - 4.0 * pow(h, 3) + pow(h, 5)) / 8.0 : 1.0 - (9.0 * h - 2.0 * pow(h, 3) + pow(h, 5)) / 16.0;
+  return number == 2 ? 1.0 - (9.0 * h - 4.0 * pow(h, 3) + pow(h, 5)) / 8.0 : 1.0 -
+      (9.0 * h - 2.0 * pow(h, 3) + pow(h, 5)) / 16.0;
 }
 
 /* In an oblique box and between walls the lattice decides, by closed_forms.h. Others are there, but are not pushed. */
@@ -341,14 +349,15 @@ static verdict far_above_a_wall(const climber *row)
   add(&s, 0.0, 0.0, wall_at + h, 0.8);
   add(&s, rho, 0.0, wall_at + g, 1.3);
   double *S = matrix(row, &s);
-  const double scale = sqrt(drag_of(&s, 0) * drag_of(&s, 3)), far = 12.0 * h * g / (8.0 * SD_PI * eta_of(&s, 0, 1) * pow(rho, 3)) * scale;
+  const double scale = sqrt(drag_of(&s, 0) * drag_of(&s, 3)),
+               far = 12.0 * h * g / (8.0 * SD_PI * eta_of(&s, 0, 1) * pow(rho, 3)) * scale;
   const double error = fmax(fabs(S[3] - far), fabs(S[6 + 4])) / far;
   free(S);
   return within(error, row->shell ? 0.04 : 0.02);
 }
 
-/* A pair far away is two points: Oseen's tensor. In a cube that is far larger than the pair, what its images add is one number
- * (Hasimoto 1959), with an error of R^2/L^3. */
+/* A pair far away is two points: Oseen's tensor. In a cube that is far larger than the pair, what its images add is one
+ * number (Hasimoto 1959), with an error of R^2/L^3. */
 static verdict t030_far_pair(const climber *row)
 {
   if (!(row->can & FAR)) return beyond_the_cut(row);
@@ -367,9 +376,11 @@ static verdict t030_far_pair(const climber *row)
   if (row->tilt[0] != 0.0) expected(row, &s, 0, 1, M);
   else if (row->edge > 0.0) pair_tensor(r, small, b, eta, M);
   else block_of(1.0 / (8.0 * SD_PI * eta * R), 1.0 / (8.0 * SD_PI * eta * R), r, M);
-  const double images = row->edge > 0.0 && row->tilt[0] == 0.0 ? 2.837297479480619 / (6.0 * SD_PI * eta * row->edge) : 0.0;
+  const double images = row->edge > 0.0 && row->tilt[0] == 0.0 ? 2.837297479480619 /
+      (6.0 * SD_PI * eta * row->edge) : 0.0;
   for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) worst = fmax(worst, fabs(S[6 * p + 3 + q] - (M[3 * p + q] - (p == q ? images : 0.0)) * scale));
+    for (int q = 0; q < 3; q++)
+      worst = fmax(worst, fabs(S[6 * p + 3 + q] - (M[3 * p + q] - (p == q ? images : 0.0)) * scale));
   free(S);
   const double sizes = (small * small + b * b) / (R * R) * scale / (8.0 * SD_PI * eta * R);
   const double beyond = row->edge > 0.0 ? 3.0 * sqrt(small * b) * R * R / pow(row->edge, 3) : sizes;
@@ -391,7 +402,8 @@ static verdict t040_reciprocity(const climber *row)
   return within(worst, 1e-11 + row->rounding);
 }
 
-/* Three spheres in a row of which the first and the last do not see each other: 1 - sqrt(2) c, c > 0.71 of those that overlap */
+/* Three spheres in a row of which the first and the last do not see each other: 1 - sqrt(2) c, c > 0.71 of those that
+   overlap */
 static cast one_between_two(const climber *row)
 {
   cast s = {.width = 3};
@@ -399,7 +411,8 @@ static cast one_between_two(const climber *row)
   return s;
 }
 
-/* The least eigenvalue of spheres that overlap as they like is positive; or it is not, and there is a scene that shows it. */
+/* The least eigenvalue of spheres that overlap as they like is positive; or it is not, and there is a scene that shows
+   it. */
 static verdict t050_positivity(const climber *row)
 {
   const int claims = row->can & POSITIVE;
@@ -414,7 +427,8 @@ static verdict t050_positivity(const climber *row)
 /* [9] a turn that the boundary allows: any, about the normal of a wall, that of a cube; 0: none */
 static int turn_for(const climber *row, double T[9])
 {
-  const double c = cos(0.7), d = sin(0.7), about_z[9] = {c, -d, 0, d, c, 0, 0, 0, 1}, cycle[9] = {0, 0, 1, 1, 0, 0, 0, 1, 0};
+  const double c = cos(0.7), d = sin(0.7), about_z[9] = {c, -d, 0, d, c, 0, 0, 0, 1},
+               cycle[9] = {0, 0, 1, 1, 0, 0, 0, 1, 0};
   const double about_x[9] = {1, 0, 0, 0, 0.8, -0.6, 0, 0.6, 0.8}, quarter[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1};
   if (row->tilt[0] != 0.0 || row->shell) return 0;
   if (row->edge > 0.0) memcpy(T, row->wall ? quarter : cycle, 9 * sizeof(double));
@@ -430,13 +444,15 @@ static double difference(const double *S, const double *B, const cast *s, const 
   double worst = 0.0;
   for (int p = 0; p < blocks; p++)
     for (int q = 0; q < blocks; q++) {
-      const int half = s->width / 3, other_p = half * (s->n - 1 - p / half) + p % half, other_q = half * (s->n - 1 - q / half) + q % half;
+      const int half = s->width / 3, other_p = half * (s->n - 1 - p / half) + p % half,
+                other_q = half * (s->n - 1 - q / half) + q % half;
       double block[9], TB[9], turned[9], back[9];
       for (int e = 0; e < 9; e++) block[e] = S[(3 * p + e / 3) * n + 3 * q + e % 3];
       for (int e = 0; e < 9; e++) back[e] = T[3 * (e % 3) + e / 3];
       sd_product3(T, block, TB);
       sd_product3(TB, back, turned);
-      for (int e = 0; e < 9; e++) worst = fmax(worst, fabs(turned[e] - B[(3 * other_p + e / 3) * n + 3 * other_q + e % 3]));
+      for (int e = 0; e < 9; e++)
+        worst = fmax(worst, fabs(turned[e] - B[(3 * other_p + e / 3) * n + 3 * other_q + e % 3]));
     }
   return worst;
 }
@@ -474,7 +490,8 @@ static verdict t070_linearity(const climber *row)
   place_alone(&e, row, &s);
   for (int l = 0; l < 3; l++) assert_int_equal(sd_mobility_apply(&e.p.m, F[l], u[l]), SD_OK);
   free_alone(&e);
-  for (int k = 0; k < numbers_of(&s); k++) worst = fmax(worst, fabs(u[2][k] - 2.0 * u[0][k] + 3.0 * u[1][k]) * drag_of(&s, k));
+  for (int k = 0; k < numbers_of(&s); k++)
+    worst = fmax(worst, fabs(u[2][k] - 2.0 * u[0][k] + 3.0 * u[1][k]) * drag_of(&s, k));
   return within(worst, 1e-12 + row->rounding);
 }
 
@@ -490,10 +507,12 @@ static void product_on(rank *r, const void *ctx)
   const int width = t->s->width;
   placed p;
   place_on(&p, t->row, t->s, r);
-  double *F = calloc((size_t) (width * r->n) + 1, sizeof(double)), *u = calloc((size_t) (width * r->n) + 1, sizeof(double));
+  double *F = calloc((size_t) (width * r->n) + 1, sizeof(double)), *u = calloc((size_t) (width * r->n) + 1,
+                                                                               sizeof(double));
   for (int i = 0; i < r->n; i++) memcpy(F + width * i, t->F + width * r->number[i], sizeof(double) * (size_t) width);
   if (sd_mobility_apply(&p.m, F, u) != SD_OK) r->all->failed = 1;
-  for (int i = 0; i < r->n; i++) memcpy(r->all->u + width * r->number[i], u + width * i, sizeof(double) * (size_t) width);
+  for (int i = 0; i < r->n; i++) memcpy(r->all->u + width * r->number[i], u + width * i, sizeof(double) * (size_t)
+    width);
   free(F), free(u);
   place_free(&p, r);
 }
@@ -516,8 +535,9 @@ static verdict t080_ranks(const climber *row)
   return within(worst, 1e-11 + row->rounding);
 }
 
-/* What is drawn has the covariance of what the product has more than the rest: of white numbers L^-1 u, L its Cholesky factor, the
- * mean squares and products are 1 and 0, within six deviations. The rest, with what each sphere does itself, is positive. */
+/* What is drawn has the covariance of what the product has more than the rest: of white numbers L^-1 u, L its Cholesky
+ * factor, the mean squares and products are 1 and 0, within six deviations. The rest, with what each sphere does
+ * itself, is positive. */
 static verdict t090_noise(const climber *row)
 {
   enum { N = 3, MOST = 6 * N, DRAWS = 800 };
@@ -538,7 +558,8 @@ static verdict t090_noise(const climber *row)
     assert_int_equal(sd_mobility_apply_rest(&e.p.m, F, v), SD_OK);
     F[q] = 0.0;
     for (int p = 0; p < n; p++) C[p * n + q] = u[p] - v[p];
-    for (int p = 0; p < n; p++) rest[p * n + q] = (v[p] + (p == q ? 1.0 / drag_of(&s, p) : 0.0)) * sqrt(drag_of(&s, p) * drag_of(&s, q));
+    for (int p = 0; p < n; p++) rest[p * n + q] = (v[p] + (p == q ? 1.0 / drag_of(&s, p) : 0.0)) *
+        sqrt(drag_of(&s, p) * drag_of(&s, q));
   }
   if (!(least_eigenvalue(rest, n) > 0.0)) worst = 1.0;
   assert_int_equal(sd_cholesky(n, C), SD_OK); /* C[p + n q], p >= q: L */
@@ -573,8 +594,8 @@ static void moved_by(const climber *row, const cast *s, int d, double by, double
   memcpy(answer, u, 6 * sizeof(double));
 }
 
-/* A sphere spins as the fluid does: by half the curl of the velocity that it has where it stands (Faxen), which is taken by
- * differences of fourth order. */
+/* A sphere spins as the fluid does: by half the curl of the velocity that it has where it stands (Faxen), which is
+ * taken by differences of fourth order. */
 static verdict t100_torques(const climber *row)
 {
   if (!(row->can & TORQUES)) return cannot("no torques");
@@ -598,7 +619,8 @@ static verdict t100_torques(const climber *row)
   return within(worst, 1e-6 + row->tolerance / step);
 }
 
-/* Radii of 1 : 3 to 1 : 30, apart, through each other, one in the other. A tolerance is of the rms of all, this the largest number. */
+/* Radii of 1 : 3 to 1 : 30, apart, through each other, one in the other. A tolerance is of the rms of all, this the
+   largest number. */
 static verdict t110_unlike_radii(const climber *row)
 {
   double worst = 0.0;
@@ -625,7 +647,8 @@ static verdict t120_torn_box(const climber *row)
   periodic_edges(&box, edge);
   torn = s;
   for (int i = 0; i < s.n; i++)
-    for (int d = 0; d < 3; d++) torn.x[3 * i + d] += (i % 3 - 1) * edge[i % 2][d] + (i % 4 - 2) * edge[row->wall ? 1 : 2][d];
+    for (int d = 0; d < 3; d++) torn.x[3 * i + d] += (i % 3 - 1) * edge[i % 2][d] + (i % 4 - 2) *
+        edge[row->wall ? 1 : 2][d];
   double *S = matrix(row, &s), *B = matrix(row, &torn);
   for (int k = 0; k < numbers_of(&s) * numbers_of(&s); k++) worst = fmax(worst, fabs(S[k] - B[k]));
   free(S), free(B);

@@ -1,5 +1,5 @@
-/* What an engine says to its caller, and a third one, made here, to see that an engine is one table. What every engine answers:
- * test_ladder.c. */
+/* What an engine says to its caller, and a third one, made here, to see that an engine is one table. What every engine
+ * answers: test_ladder.c. */
 #include "scene.h"
 
 #include "engine_free.h"

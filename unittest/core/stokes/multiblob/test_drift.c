@@ -51,8 +51,8 @@ static place_of moved(const place_of *s, const double *V, double part)
   return to;
 }
 
-/* D += part times the first moments of forces l of the points, and of forces [spheres] that hold members of clumps, about the
- * centres */
+/* D += part times the first moments of forces l of the points, and of forces [spheres] that hold members of clumps,
+ * about the centres */
 static void add_moments(const blob_flock *f, const double *l, const double *held_by, double part, double *D)
 {
   for (long k = 0, own = f->s->m.n; k < f->s->n; k++) {
@@ -128,7 +128,8 @@ static void add_mean(const place_of *s, const sd_bodies *A, const sd_drifter *d,
                      double *mean)
 {
   const int size = 6 * s->n;
-  double of_points[24], of_films[24], answer[ANSWER], largest = 0.0, *u = calloc((size_t) sd_bodies_unknowns(A), sizeof(double));
+  double of_points[24], of_films[24], answer[ANSWER], largest = 0.0, *u = calloc((size_t) sd_bodies_unknowns(A),
+                                                                                 sizeof(double));
   double *work = malloc(sizeof(double) * (size_t) (24 * s->n + 12 * A->spheres.n + sd_bodies_unknowns(A)));
   const sd_drifter_push push = {u, y ? y : u, NULL, f, NULL, 1e-9};
   assert_int_equal(sd_drifter_move(A, d, &push, work, of_points, of_films), SD_OK);
@@ -205,7 +206,8 @@ static double error_of_drift(const place_of *s, int by_differences)
     if (size > 0.0) add_mean(s, &at.A, &d, NULL, F, mean);
   }
   if (by_differences) {
-    double *l = calloc(2 * (size_t) rows, sizeof(double)), *slip = l + rows, load[24] = {0.0}, answer[ANSWER], F[6 * MOST] = {0.0};
+    double *l = calloc(2 * (size_t) rows, sizeof(double)), *slip = l + rows, load[24] = {0.0}, answer[ANSWER],
+           F[6 * MOST] = {0.0};
     for (int j = 0; j < 6 * s->n; j++) {
       double unit[24] = {0.0};
       if (!s->m && j % 6 >= 3) continue;

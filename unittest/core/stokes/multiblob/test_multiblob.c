@@ -7,8 +7,8 @@
 
 enum { MOST = 3 * 42 };
 
-/* Over exact: with the forces of the motion g_k V, which is the pressure mode as it passes a sphere that moves with the exact
- * Faxen velocity, a free one moves at -R_01/R_00 more. */
+/* Over exact: with the forces of the motion g_k V, which is the pressure mode as it passes a sphere that moves with the
+ * exact Faxen velocity, a free one moves at -R_01/R_00 more. */
 typedef struct {
   double drag, rotation, stresslet, faxen, pressure_gradient;
 } lone_numbers;

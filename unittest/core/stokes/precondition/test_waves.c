@@ -9,7 +9,7 @@
 static const sd_law RPY = {.tensor = SD_TENSOR_RPY};
 static const double ALPHA = 0.6;
 
-/* --- what is inverted -------------------------------------------------------------------------------------------- */
+/* --- what is inverted --------------------------------------------------------------------------------------------- */
 
 enum { N = 12 };
 
@@ -178,7 +178,7 @@ static void the_longest_waves_come_first(void **state)
   assert_int_equal(sd_wave_list_of(&box, &list), 0);
 }
 
-/* --- ranks ------------------------------------------------------------------------------------------------------- */
+/* --- ranks -------------------------------------------------------------------------------------------------------- */
 
 /* Sums over two ranks that run one after the other, from the beginning in every turn: a turn gathers the first sum that
  * is not yet known, and the next turn tells it. Sums after it are each rank's own, of no use and not looked at. */
@@ -245,7 +245,7 @@ static void ranks_share_the_waves(void **state)
   scene_free(&s);
 }
 
-/* --- what it is for ---------------------------------------------------------------------------------------------- */
+/* --- what it is for ----------------------------------------------------------------------------------------------- */
 
 /* Iterations for random velocities, forces alone or with spins and torques; p: the spheres with their images */
 static int iterations(periodic *p, const scene *s, sd_precondition *P, void *ctx, double tolerance)

@@ -80,7 +80,7 @@ static void mean_shells(void **state)
   print_message("mean shells: largest difference %.2g\n", worst);
 }
 
-/* --- shells by radius -- */
+/* --- shells by radius --- */
 
 static sd_films by_radius(int one_body)
 {

@@ -147,8 +147,8 @@ static void run(const layout *l, size_t bytes, int ranks, const int *bricks, int
         for (int j = 0; j < n[1]; j++)
           for (int k = 0; k < n[2]; k++)
             for (int c = 0; c < 3; c++)
-              add_to(g, wrapped(lo[0] + i, l->size[0]), wrapped(lo[1] + j, l->size[1]), wrapped(lo[2] + k, l->size[2]), c,
-                     force(q, i, j, k, c));
+              add_to(g, wrapped(lo[0] + i, l->size[0]), wrapped(lo[1] + j, l->size[1]), wrapped(lo[2] + k, l->size[2]),
+                     c, force(q, i, j, k, c));
     }
   }
   for (int p = 0; p < ranks; p++) pthread_create(&r[p].thread, NULL, convolve, r + p);
@@ -157,7 +157,8 @@ static void run(const layout *l, size_t bytes, int ranks, const int *bricks, int
   for (int p = 0; p < ranks; p++) {
     sd_grid *g = &r[p].grid;
     EACH_POINT(g) {
-      const long point = ((long) wrapped(g->lo[0] + i, l->size[0]) * l->size[1] + wrapped(g->lo[1] + j, l->size[1])) * l->size[2] +
+      const long point = ((long) wrapped(g->lo[0] + i, l->size[0]) * l->size[1] + wrapped(g->lo[1] + j, l->size[1])) *
+          l->size[2] +
           wrapped(g->lo[2] + k, l->size[2]);
       const double u = sd_number(g->brick, bytes, number_at(g, i, j, k, c));
       if (largest == 0.0) whole[3 * point + c] = u;
@@ -172,7 +173,8 @@ static void any_number_of_ranks_is_one(void **state)
 {
   (void) state;
   const layout layouts[] = {{{6, 10, 8}, {6, 10, 8}, 1, 5}, {{24, 5, 9}, {24, 5, 9}, 1, 4},
-                            {{8, 12, 10}, {4, 6, 5}, 0, 6}, {{3, 4, 30}, {3, 4, 30}, 1, 16}, {{10, 9, 16}, {10, 9, 16}, 1, 6}};
+                            {{8, 12, 10}, {4, 6, 5}, 0, 6}, {{3, 4, 30}, {3, 4, 30}, 1, 16},
+                            {{10, 9, 16}, {10, 9, 16}, 1, 6}};
   for (int k = 0; k < 5; k++) {
     const layout *l = layouts + k;
     double *whole = malloc(sizeof(double) * 3 * (size_t) (l->size[0] * l->size[1] * l->size[2]));

@@ -67,7 +67,8 @@ static splitting choose(const scene *s, const mixture *m, double tolerance, int 
   return how;
 }
 
-/* Largest of the errors of small and of large spheres, each over the rms of what they would do alone; torques likewise */
+/* Largest of the errors of small and of large spheres, each over the rms of what they would do alone; torques
+   likewise */
 static double error_of(const scene *s, const mixture *m, const double *u, const double *expected)
 {
   double worst = 0.0;
@@ -106,7 +107,8 @@ static void open_boxes_agree_with_all_pairs(void **state)
     const scene s = make(m, 0, 3 + k);
     static double expected[6 * MOST], u[6 * MOST];
     const sd_law law = {.tensor = SD_TENSOR_RPY};
-    sd_mobility_scene scene = {.how = {.width = m->width, .law = law}, .n = m->n, .n_all = m->n, .spheres = {s.x, s.a, s.w}};
+    sd_mobility_scene scene = {.how = {.width = m->width, .law = law}, .n = m->n, .n_all = m->n,
+                               .spheres = {s.x, s.a, s.w}};
     product(&sd_mobility_all_pairs, &scene, s.F, expected);
     for (int digits = 3; digits <= CHECK_SIZE(9, 3); digits += 6) {
       const splitting how = choose(&s, m, pow(10.0, -digits), 2);

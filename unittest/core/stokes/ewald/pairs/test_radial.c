@@ -137,11 +137,13 @@ static void tail_of_a_band_is_the_rest_of_the_mean(void **state)
   const sd_ewald e = at_points(7.0);
   double tail[3], within[3] = {0.0};
   for (int s = 0; s <= STEPS; s++) {
-    const double r = s * e.range / STEPS, weight = (s == 0 || s == STEPS ? 1.0 : s % 2 ? 4.0 : 2.0) / 3.0 * e.range / STEPS;
+    const double r = s * e.range / STEPS, weight = (s == 0 || s == STEPS ? 1.0 : s % 2 ? 4.0 : 2.0) / 3.0 * e.range /
+        STEPS;
     double D[SD_RADIALS];
     sd_radial(&e, r, D);
     for (int n = 0; n < 3; n++)
-      within[n] += weight * 4.0 * SD_PI * r * ((n == 0 ? 1.0 / (6.0 * SD_PI) : 0.0) - r * D[SD_I0 + 2 * n] - pow(r, 3) / 3.0 * D[SD_J0 + 2 * n]);
+      within[n] += weight * 4.0 * SD_PI * r * ((n == 0 ? 1.0 / (6.0 * SD_PI) : 0.0) - r * D[SD_I0 + 2 * n] - pow(r, 3) /
+                                               3.0 * D[SD_J0 + 2 * n]);
   }
   sd_radial_tail(&e, tail);
   CHECK_NEAR(tail[0] + within[0], e.a_ref * e.a_ref / 9.0, 1e-8);

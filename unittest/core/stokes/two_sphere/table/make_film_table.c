@@ -20,7 +20,7 @@ static double ratio_of_v(double v)
   return (1.0 + v) / (1.0 - v);
 }
 
-/* --- the tables -- */
+/* --- the tables --- */
 
 /* Two shells and how they stand */
 typedef struct {
@@ -135,7 +135,7 @@ static void make_half(void)
   for (int k = 0; k < SD_FILM_HALF_KINDS; k++) make_kind(sd_film_kinds + k);
 }
 
-/* --- checks -- */
+/* --- checks --- */
 
 static int say(double worst, double most)
 {

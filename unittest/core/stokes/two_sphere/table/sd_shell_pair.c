@@ -84,7 +84,7 @@ static void set_addition(const sd_shell_blob *b, double a, int first, double D[B
   }
 }
 
-/* --- a pair of them -- */
+/* --- a pair of them --- */
 
 /* The shell of the larger sphere, 2, of radius 1, stands; that of the smaller one, 1, is put beside it
  * in many ways, and what 2 is by itself is known once.
@@ -214,7 +214,7 @@ static void add_addition(const double D[BOTH * BOTH], double G[BOTH * BOTH])
   if (sd_cholesky(BOTH, G) != SD_OK || sd_cholesky_inverse(BOTH, G) != SD_OK) exit(EXIT_FAILURE);
 }
 
-/* --- means over orientations -- */
+/* --- means over orientations --- */
 
 /* sum += G of modes scaled to spheres of radii a, without what depends on azimuth and handedness; d from
  * sphere 1 to 2 */
