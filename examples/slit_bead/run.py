@@ -14,13 +14,14 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
+from runs import np, plt, dumped, finished, need, options, save  # noqa: E402
 
 # Of a sphere of radius 1 over that in open fluid: distance of the walls, height, across them, along them (free to
 # turn). Computed by this project in another code, to the digits that are here.
 EXACT = [(2.2, 1.1, 0.047549, 0.253454), (2.5, 1.25, 0.113121, 0.331195), (4, 2.0, 0.358527, 0.541784),
          (10, 2.5, 0.564226, 0.744783), (10, 5.0, 0.715889, 0.802444)]
 WIDTHS = [2.2, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0]
+HEIGHTS = [1.02, 1.1, 1.5, 2.5, 5.0, 7.5, 8.5, 8.9, 8.98]       # where they are 10 apart
 
 
 def faxen(H, quarter=False):
@@ -33,15 +34,25 @@ def faxen(H, quarter=False):
     return 1 - 1.004 * s + 0.418 * s**3 + 0.21 * s**4 - 0.169 * s**5
 
 
-def speed(out, H, z, d=0, **more):
-    """Along the force, component d; along the walls the mean of both flows, which differ from a lone bead by as much
-    each way"""
-    force, v = " ".join("1" if k == d else "0" for k in range(3)), []
-    for flow in ("pressure", "flux") if d == 0 else ("pressure",):
-        finished("slit_bead", ["lmp", "-in", str(HERE / "in.slit_bead"), "-log", "log.bead"] + values(
-            dict(H=H, z=z, L=6 * H + 12, force=force, flow=flow, **more)), out)
-        v.append(list(dumped(out / "bead"))[-1][1][0, 1 + d])
-    return np.mean(v)
+def speeds(out, beads, **more):
+    """{(H, z, d): speed along component d of the force, in units of that in open fluid} for beads (H, z, d); along the
+    walls the mean of both flows, which differ from a lone bead by as much each way. In one start of LAMMPS."""
+    runs = [(bead, flow) for bead in beads for flow in (("pressure", "flux") if bead[2] == 0 else ("pressure",))]
+    names = ["H", "z", "L", "force", "flow", "out", *more]
+    lines = []
+    for k, ((H, z, d), flow) in enumerate(runs):
+        force = " ".join("1" if axis == d else "0" for axis in range(3))
+        of_this = [H, z, 6 * H + 12, f'"{force}"', flow, f"bead.{k}", *(f'"{words}"' for words in more.values())]
+        if k:
+            lines += ["clear"] + [f"variable {name} delete" for name in names]
+        lines += [f"variable {name} index {value}" for name, value in zip(names, of_this)]
+        lines += [f"include {HERE / 'in.slit_bead'}"]
+    (out / "in.beads").write_text("\n".join(lines) + "\n")
+    finished("slit_bead", ["lmp", "-in", "in.beads", "-log", "log.bead"], out)
+    found = {}
+    for k, (bead, _) in enumerate(runs):
+        found.setdefault(bead, []).append(list(dumped(out / f"bead.{k}"))[-1][1][0, 1 + bead[2]])
+    return {bead: np.mean(each) for bead, each in found.items()}
 
 
 def draw(middle, heights, images, path):
@@ -77,9 +88,12 @@ def main():
     given = options(__file__, __doc__)
     need("lmp")
     out, c = given.out, Checks()
-    middle = {d: [speed(out, H, H / 2, d) for H in WIDTHS] for d in (0, 2)}
-    images = [speed(out, H, H / 2, 2, model="algorithm 2") for H in WIDTHS]
-    heights = [(z, speed(out, 10, z, 0), speed(out, 10, z, 2)) for z in (1.02, 1.1, 1.5, 2.5, 5.0, 7.5, 8.5, 8.9, 8.98)]
+    places = {(H, H / 2) for H in WIDTHS} | {(10.0, z) for z in HEIGHTS}
+    speed = speeds(out, sorted((*place, d) for place in places for d in (0, 2)))
+    points = speeds(out, [(H, H / 2, 2) for H in WIDTHS], model="algorithm 2")
+    middle = {d: [speed[H, H / 2, d] for H in WIDTHS] for d in (0, 2)}
+    images = [points[H, H / 2, 2] for H in WIDTHS]
+    heights = [(z, speed[10.0, z, 0], speed[10.0, z, 2]) for z in HEIGHTS]
     draw(middle, heights, images, out / "slit_bead.png")
     print(f"picture: {out / 'slit_bead.png'}\n")
     at = {10: dict((row[0], row[1:]) for row in heights)}

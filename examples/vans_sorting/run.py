@@ -39,7 +39,7 @@ def side(axes, grains):
 def main():
     given, c = options(__file__, __doc__, ranks=1, seconds=24.0, reuse="", quick=False), Checks()
     need("mpirun", "lmp")
-    seconds = 5.0 if given.quick else given.seconds
+    seconds = 3.5 if given.quick else given.seconds
     directory = pathlib.Path(given.reuse or given.out)
     if not given.reuse:
         lmp(HERE, given, directory, f"log.vans_sorting.{given.ranks}", seconds=seconds)
