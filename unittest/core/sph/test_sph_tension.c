@@ -1,91 +1,8 @@
 /* Surface tension: what a plane hides, the curvature of circles, spheres and jets, the normal at a wall, and
  * what is kept. */
 #include "sd_sph_deep.h"
-#include "sd_sph_drops.h"
-#include "sd_sph_tension.h"
 
-#include "check.h"
-
-#include <math.h>
-#include <string.h>
-
-enum { MOST = 6000 };
-
-/* Particles, all of this rank, with lists of all that are nearer than 2 h. */
-typedef struct {
-  int n, wall[MOST + 1], *neighbor[MOST], own[MOST], count[MOST], *pool;
-  double x4[4 * (MOST + 1)], v4[4 * (MOST + 1)];
-  double sums[8 * MOST], beside[8 * MOST], contact[4 * (MOST + 1)], whole[4 * MOST];
-  double surface[4 * (MOST + 1)], at_wall[8 * MOST], kappa[MOST + 1], F[3 * MOST], area[MOST];
-  double rows[SD_SPH_SKIN_SUMS * MOST], k[MOST];
-  size_t first[MOST + 1];
-  sd_sph_skin skin;
-  sd_sph_surface plane;
-  sd_sph_both list;
-  sd_sph_film film;
-} drop;
-
-static drop all_of_it;
-
-static drop *begin(int dimension, double h)
-{
-  drop *s = &all_of_it;
-  free(s->pool);
-  free(s->skin.neighbor);
-  free(s->skin.weight);
-  memset(s, 0, sizeof(*s));
-  sd_sph_surface_make(SD_SPH_WENDLAND, dimension, h, &s->plane);
-  return s;
-}
-
-static void add(drop *s, double x, double y, double z, double V, int wall)
-{
-  assert_true(s->n < MOST);
-  const double row[4] = {x, y, z, V};
-  memcpy(s->x4 + 4 * s->n, row, sizeof(row));
-  s->wall[s->n++] = wall;
-}
-
-static double distance(const drop *s, int i, int j)
-{
-  double r2 = 0.0;
-  for (int d = 0; d < 3; d++) r2 += (s->x4[4 * i + d] - s->x4[4 * j + d]) * (s->x4[4 * i + d] - s->x4[4 * j + d]);
-  return sqrt(r2);
-}
-
-static void find_neighbours(drop *s, int walls)
-{
-  for (int round = 0; round < 2; round++) {
-    size_t size = 0;
-    for (int i = 0; i < s->n; i++) {
-      if (round) s->neighbor[i] = s->pool + size;
-      s->count[i] = s->own[i] = 0;
-      for (int j = 0; j < s->n; j++)
-        if (j != i && distance(s, i, j) < 2.0 * s->plane.h) {
-          if (round) s->pool[size + s->count[i]] = j;
-          s->own[i] += j < i;
-          s->count[i]++;
-        }
-      while (s->count[i] % SD_SPH_LANES) {
-        if (round) s->pool[size + s->count[i]] = s->n;
-        s->count[i]++;
-      }
-      size += (size_t) s->count[i];
-    }
-    if (!round) s->pool = malloc(sizeof(int) * (size + 1));
-  }
-  for (int d = 0; d < 3; d++) s->x4[4 * s->n + d] = 1e10;
-  s->list = (sd_sph_both){s->n, s->neighbor, s->own, s->count};
-  s->film = (sd_sph_film){&s->plane, &s->list, s->n, s->x4, walls ? s->wall : NULL, NULL, NULL};
-}
-
-static void find_drops(drop *s, int *parent)
-{
-  sd_cells cells = {0};
-  assert_int_equal(sd_cells_create(&cells, s->n), SD_OK);
-  sd_sph_find_drops(&s->film, &cells, parent);
-  sd_cells_free(&cells);
-}
+#include "surface_drop.h"
 
 /* Up to the curvatures; angle: of all walls. */
 static void look(drop *s, double angle)
@@ -106,20 +23,6 @@ static void look(drop *s, double angle)
   s->skin = (sd_sph_skin){s->first, malloc(sizeof(int) * room), malloc(sizeof(double) * room)};
   sd_sph_film_curvatures(&s->film, s->whole, s->surface, walls ? s->at_wall : NULL, s->v4, &s->skin, s->rows,
                          s->kappa);
-}
-
-/* Rings of particles of one volume, as a drop at rest has them; 2-D. */
-static void disk(drop *s, double R, double dx, double x, double y)
-{
-  const int rings = (int) floor(R / dx + 0.5);
-  for (int k = 0; k < rings; k++) {
-    const double in = R * k / rings, out = R * (k + 1) / rings, r = sqrt(0.5 * (in * in + out * out));
-    const int count = (int) floor(2.0 * 3.141592653589793 * r / dx + 0.5);
-    for (int m = 0; m < count; m++) {
-      const double at = 2.0 * 3.141592653589793 * (m + 0.31 * k) / count;
-      add(s, x + r * cos(at), y + r * sin(at), 0.0, 3.141592653589793 * (out * out - in * in) / count, 0);
-    }
-  }
 }
 
 static double mean_kappa(const drop *s)
@@ -459,111 +362,6 @@ static void a_uniform_pressure_holds_a_drop_on_its_wall(void **state)
   assert_true(dry > 1e-4);
 }
 
-/* Two drops, one of which is held. What is on one rank here stands for two: the second one sees the names of the
- * first as those of ghosts. */
-static void a_free_drop_keeps_its_momentum_and_a_held_one_is_left_alone(void **state)
-{
-  (void) state;
-  uint64_t seed = 8;
-  drop *s = begin(2, 0.2);
-  disk(s, 0.6, 0.1, 0.0, 0.0);
-  const int first = s->n;
-  disk(s, 0.4, 0.1, 1.5, 0.0);
-  find_neighbours(s, 0);
-  int parent[MOST], place[MOST];
-  double name[MOST], mass[MOST], held[MOST], F[3 * MOST], sum[3];
-  sd_sph_drop mine[MOST], everywhere[2 * MOST];
-  for (int i = 0; i < s->n; i++) {
-    name[i] = (i * 37) % 1009 + 1.0;
-    mass[i] = uniform(&seed, 1.0, 2.0);
-    held[i] = i == first + 3;
-    for (int d = 0; d < 3; d++) F[3 * i + d] = s->F[3 * i + d] = uniform(&seed, -1.0, 1.0);
-  }
-  find_drops(s, parent);
-  assert_true(sd_sph_name_drops(s->n, parent, name));
-  assert_false(sd_sph_name_drops(s->n, parent, name));
-  const int count = sd_sph_sum_drops(&s->film, parent, name, mass, held, F, mine, place);
-  assert_int_equal(count, 2);
-  memcpy(everywhere, mine, sizeof(sd_sph_drop) * 2);
-  assert_int_equal(sd_sph_join_drops(2, everywhere, sum), 2);
-  sd_sph_find_excess(2, everywhere, count, mine);
-  sd_sph_keep_momentum(&s->film, parent, place, mass, mine, F);
-  double free_sum[3] = {0.0}, held_sum[3] = {0.0};
-  for (int i = 0; i < s->n; i++)
-    for (int d = 0; d < 3; d++) {
-      if (i < first) free_sum[d] += F[3 * i + d];
-      else held_sum[d] += F[3 * i + d];
-      if (i >= first) CHECK_NEAR(F[3 * i + d], s->F[3 * i + d], 0.0);
-      /* the same acceleration for all */
-      if (i < first)
-        CHECK_NEAR((F[3 * i + d] - s->F[3 * i + d]) / mass[i], (F[d] - s->F[d]) / mass[0], 1e-13);
-    }
-  for (int d = 0; d < 3; d++) {
-    CHECK_NEAR(free_sum[d], 0.0, 1e-12);
-    CHECK_NEAR(sum[d], held_sum[d], 1e-12);
-  }
-}
-
-/* Random points, where many gaps are near 2 h: as if every pair had been asked. */
-static void drops_are_those_of_all_pairs(void **state)
-{
-  (void) state;
-  for (int dimension = 2; dimension <= 3; dimension++) {
-    uint64_t seed = 5;
-    static int parent[MOST], name[MOST];
-    drop *s = begin(dimension, 0.2);
-    for (int i = 0; i < (dimension == 3 ? 350 : 150); i++)
-      add(s, uniform(&seed, -3.0, 3.0), uniform(&seed, -3.0, 3.0), dimension == 3 ? uniform(&seed, -0.6, 0.6) : 0.0,
-          0.01, i % 50 == 7);
-    s->film = (sd_sph_film){&s->plane, NULL, s->n, s->x4, s->wall, NULL, NULL};
-    find_drops(s, parent);
-    for (int i = 0; i < s->n; i++) name[i] = i;
-    for (int changed = 1; changed;) {
-      changed = 0;
-      for (int i = 0; i < s->n; i++)
-        for (int j = 0; j < i; j++)
-          if (!s->wall[i] && !s->wall[j] && name[i] != name[j] && distance(s, i, j) < 0.4) {
-            name[i] = name[j] = name[i] < name[j] ? name[i] : name[j];
-            changed = 1;
-          }
-    }
-    int drops = 0;
-    for (int i = 0; i < s->n; i++) {
-      while (parent[parent[i]] != parent[i]) parent[i] = parent[parent[i]];
-      drops += !s->wall[i] && name[i] == i;
-    }
-    for (int i = 0; i < s->n; i++)
-      for (int j = 0; j < i; j++) assert_int_equal(parent[i] == parent[j], name[i] == name[j]);
-    assert_true(drops > 20 && drops < s->n / 2);
-  }
-}
-
-/* Two parts of one drop, of one name, are added before the force is given back. */
-static void parts_of_a_drop_on_two_ranks_are_one(void **state)
-{
-  (void) state;
-  drop *s = begin(2, 0.2);
-  disk(s, 0.5, 0.1, 0.0, 0.0);
-  find_neighbours(s, 0);
-  int parent[MOST], place[MOST];
-  double name[MOST], mass[MOST], held[MOST] = {0.0}, F[3 * MOST] = {0.0}, sum[3], total = 0.0;
-  sd_sph_drop mine[MOST], everywhere[2];
-  for (int i = 0; i < s->n; i++) {
-    name[i] = 5.0;
-    mass[i] = 2.0;
-    F[3 * i] = 1.0;
-  }
-  find_drops(s, parent);
-  const int count = sd_sph_sum_drops(&s->film, parent, name, mass, held, F, mine, place);
-  everywhere[0] = (sd_sph_drop){5.0, {-1.0 * s->n, 0.0, 0.0}, 3.0, 0.0};
-  everywhere[1] = mine[0];
-  assert_int_equal(sd_sph_join_drops(2, everywhere, sum), 1);
-  sd_sph_find_excess(1, everywhere, count, mine);
-  sd_sph_keep_momentum(&s->film, parent, place, mass, mine, F);
-  for (int i = 0; i < s->n; i++) total += F[3 * i];
-  CHECK_NEAR(total, 1.0 * s->n, 1e-12);    // the two parts balance: nothing is given back
-}
-
 static void bounds_have_their_formulas(void **state)
 {
   (void) state;
@@ -587,9 +385,6 @@ int main(void)
       cmocka_unit_test(a_wedge_with_its_contact_angle_is_plane),
       cmocka_unit_test(a_surface_bends_along_its_contact_line),
       cmocka_unit_test(a_uniform_pressure_holds_a_drop_on_its_wall),
-      cmocka_unit_test(a_free_drop_keeps_its_momentum_and_a_held_one_is_left_alone),
-      cmocka_unit_test(drops_are_those_of_all_pairs),
-      cmocka_unit_test(parts_of_a_drop_on_two_ranks_are_one),
       cmocka_unit_test(bounds_have_their_formulas),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -136,3 +136,10 @@ def test_lines_of_scripts_have_at_most_120_columns():
     assert len(files) > 500
     assert not [f"{path.relative_to(TOP)}:{number}" for path in files
                 for number, line in enumerate(path.read_text().splitlines(), 1) if len(line) > 120]
+
+
+def test_files_of_tests_have_at_most_500_lines():
+    """Each has one idea."""
+    files = [path for path in scripts() if "unittest" in path.parts and path.suffix in (".py", ".c", ".h", ".cpp")]
+    assert len(files) > 250
+    assert not [path.name for path in files if len(path.read_text().splitlines()) > 500]

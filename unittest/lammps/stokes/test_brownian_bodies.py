@@ -150,6 +150,18 @@ def boltzmann(k, r0):
     return mean, (p * (r - mean)**2).sum() / p.sum()
 
 
+def lengths_of_bonds(sim, k, r0, runs, steps):
+    """[runs, bonds] in radii, every so many steps from equilibrium on; the ends of each bond follow one another"""
+    sim.commands(["bond_style harmonic", f"bond_coeff 1 {k / 2!r} {r0 * A!r}", "comm_modify cutoff 8"])
+    noise(sim).run(60)
+    lengths = []
+    for _ in range(runs):
+        sim.run(steps, "pre no post no")
+        x = sim.x.reshape(-1, 2, 3)
+        lengths.append(np.linalg.norm(x[:, 1] - x[:, 0], axis=1) / A)
+    return np.array(lengths)
+
+
 @pytest.mark.parametrize("words, runs", [("rotation yes lubrication yes", 400)])
 def test_bonds_between_spheres_with_films_have_boltzmanns_length(simulation, words, runs):
     """Without the drift of the film the mean is 0.27 sigma too short. They are no molecules: within one there are no
@@ -160,15 +172,8 @@ def test_bonds_between_spheres_with_films_have_boltzmanns_length(simulation, wor
     spheres = Spheres(x, A, bonds=[(2 * i + 1, 2 * i + 2) for i in range(count)])
     sim = simulation(spheres, f"cut_off_distance inf visc {ETA} {words}", fix=False, dt=0.1 * UNIT / k,
                      box=[(-90.0, 120.0)] * 3)
-    sim.commands(["bond_style harmonic", f"bond_coeff 1 {k / 2!r} {2.45 * A!r}", "comm_modify cutoff 8"])
-    noise(sim).run(60)
-    lengths = []
-    for _ in range(runs):
-        sim.run(20, "pre no post no")
-        x = sim.x.reshape(-1, 2, 3)
-        lengths.append(np.linalg.norm(x[:, 1] - x[:, 0], axis=1) / A)
-    mean, variance = boltzmann(25, 2.45)
-    r, n = np.array(lengths), runs * count * 0.4
+    r = lengths_of_bonds(sim, k, 2.45, runs, 20)
+    (mean, variance), n = boltzmann(25, 2.45), runs * count * 0.4
     assert (r.mean() - mean) / np.sqrt(variance) == pytest.approx(0, abs=4 / np.sqrt(n))
     assert r.var() == pytest.approx(variance, rel=4 * np.sqrt(2 / n) + 0.01)
 
@@ -186,16 +191,8 @@ def test_stiff_bond_between_multiblobs_with_a_film_has_boltzmanns_length(simulat
     apart = make(SHORT).commands(["variable f atom (id%2)*2-1", "fix push all addforce v_f 0 0",
                                   "fix move all stokes_dynamics/overdamped"]).run(0)
     rate = k * (apart.v[0, 0] - apart.v[1, 0])
-    sim = make(0.2 / rate)
-    sim.commands(["bond_style harmonic", f"bond_coeff 1 {k / 2!r} {r0 * A!r}", "comm_modify cutoff 8"])
-    noise(sim).run(60)
-    lengths = []
-    for _ in range(runs):
-        sim.run(5, "pre no post no")
-        x = sim.x.reshape(-1, 2, 3)
-        lengths.append(np.linalg.norm(x[:, 1] - x[:, 0], axis=1) / A)
-    mean, variance = boltzmann(625, r0)
-    r, n = np.array(lengths), runs * count * 0.5
+    r = lengths_of_bonds(make(0.2 / rate), k, r0, runs, 5)
+    (mean, variance), n = boltzmann(625, r0), runs * count * 0.5
     assert (r.mean() - mean) / np.sqrt(variance) == pytest.approx(0.02, abs=3 / np.sqrt(n))
     assert r.var() == pytest.approx(1.04 * variance, rel=3 * np.sqrt(2 / n) + 0.01)
 

@@ -8,7 +8,7 @@ import pytest
 
 import model
 from host import allowed, at_most
-from system import LammpsError, Spheres, dump_lines, input_lines, lmp, read_dump
+from system import LammpsError, Spheres, dump_lines, from_restart, input_lines, lmp, read_dump
 
 MOVE = "fix move all stokes_dynamics/overdamped"
 ETA = 1 / (6 * np.pi)                    # 6 pi eta = 1
@@ -312,10 +312,8 @@ def script(folder, style, runs, newton="on", begin=None):
     spheres.x[3, 2] *= 1.2
     pair = f"cut_off_distance inf visc 1 {STYLES[style]} wall zlo 0 relative_tolerance 1e-12"
     lines = input_lines(spheres, pair, str(folder / "heap.data"), fix=False, dt=0.05, newton=newton, box=BOX)
-    if begin:                            # from a restart file in place of the data file
-        cut = [i for i, line in enumerate(lines) if line.startswith("read_data")][0]
-        lines = [line for line in lines[:cut] if "boundary" not in line] + [f"read_restart {begin}"] + lines[cut + 1:]
-        lines = [line for line in lines if not line.startswith("pair_")]
+    if begin:
+        lines = [line for line in from_restart(lines, begin) if not line.startswith("pair_")]
     return lines + ["variable fx atom 0.4*sin(id)", "fix weight all addforce v_fx 0 -3", MOVE] + runs
 
 
