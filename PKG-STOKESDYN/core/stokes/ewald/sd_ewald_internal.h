@@ -12,14 +12,21 @@
 /* Behind the rows: no force, and far from everything */
 enum { SD_EMPTY_ROWS = 16 };
 
+/* Rows that have one list of neighbours, at most */
+enum { SD_BUNCH = 4 };
+
 /* Near part: each pair once, for both its spheres; lengths scaled as in sd_packed. Sums times 8 pi
- * and without w of the sphere, its own D(0) not among them. */
+ * and without w of the sphere, its own D(0) not among them. Rows stand in bunches, of one row each or, where
+ * kernels take more, of several that are close: what is near one of them is near most others, and is read and
+ * written once for all. */
 typedef struct {
-  int rows, width;
+  int bunches, width;
   /* all radii a_ref: b = 0 */
   int equal;
-  /* [rows + 1] where the neighbours of a row begin, which are filled up to whole vectors of any
-   * set */
+  /* [bunches + 1] first row of each; and where its neighbours begin, which are rows behind its first, those
+   * of its own before all others, and filled up to whole vectors of any set. Of one row they are within the
+   * range, of a bunch within that of one of its rows at least. */
+  const int *begin;
   const long *first;
   const int *neighbor;
   /* [8 (rows + SD_EMPTY_ROWS)] x y z a, w F; the first empty one takes the place of missing neighbours, and
@@ -126,11 +133,11 @@ typedef struct {
   double gamma, sy;
 } sd_image_rows;
 
-/* Which rows of ranges, begin and end of each [count][2], are within a distance of a place? Their
- * numbers to list, which has room for 8 more than there are; returns how many. centre [3]:
+/* Which rows of ranges, begin and end of each [count][2], are within a distance of one of so many places [3]?
+ * Their numbers to list, which has room for 8 more than there are; returns how many. centre [3]:
  * coordinates, stride apart. */
 typedef long sd_near_search(const double *centre, long stride, const int *ranges, int count,
-                            const double *x, double distance2, int *list);
+                            const double *x, int places, double distance2, int *list);
 
 /* Blocks of groups: most points, and the numbers of a row, filled up with zeros to whole vectors of
  * every set */
@@ -140,6 +147,8 @@ struct sd_ewald_kernels {
   /* of a number */
   size_t bytes;
   void (*near_part)(const sd_near_part *p);
+  /* how many rows a bunch may have, of forces alone; with torques one */
+  int bunch;
   /* forces alone, p->first and p->neighbor not read; NULL: vectors do not hold a group */
   void (*near_groups)(const sd_near_part *p, const sd_near_groups *g);
   void (*spread)(const sd_spreading *s);

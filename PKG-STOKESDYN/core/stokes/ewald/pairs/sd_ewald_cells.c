@@ -87,6 +87,26 @@ sd_status sd_ewald_cells_sort(sd_ewald_cells *c, const double *x, const double *
   return SD_OK;
 }
 
+/* Insertion sort: a cell has few rows. */
+void sd_ewald_cells_order(sd_ewald_cells *c)
+{
+  const long cells = (long) c->n[0] * c->n[1] * c->n[2], rows = c->rows;
+  double *z = c->centre + 2 * rows;
+  for (long cell = 0; cell < cells; cell++)
+    for (int k = c->first[cell] + 1; k < c->first[cell + 1]; k++) {
+      const int place = c->place[k];
+      double x[3];
+      int to = k;
+      sd_ewald_cells_at(c, k, x);
+      for (; to > c->first[cell] && z[to - 1] > x[2]; to--) {
+        c->place[to] = c->place[to - 1];
+        for (long d = 0; d < 3; d++) c->centre[d * rows + to] = c->centre[d * rows + to - 1];
+      }
+      c->place[to] = place;
+      for (long d = 0; d < 3; d++) c->centre[d * rows + to] = x[d];
+    }
+}
+
 /* --- neighbours --- */
 
 static int add_column(sd_ewald_cells *c, int x, int y, int z)
@@ -120,9 +140,9 @@ static int find_columns(sd_ewald_cells *c)
   return ok;
 }
 
-/* The rows in the columns of a cell, as ranges; those of its own column begin with its own. Returns
- * how many ranges, and in all how many rows. */
-static int ranges_of(const sd_ewald_cells *c, const int *cell, long *rows)
+/* The rows in the columns of cells x, y and from z to last, as ranges; those of their own column begin with
+ * their own. Returns how many ranges, and in all how many rows. */
+static int ranges_of(const sd_ewald_cells *c, const int *cell, int last, long *rows)
 {
   int many = 0;
   *rows = 0;
@@ -134,7 +154,7 @@ static int ranges_of(const sd_ewald_cells *c, const int *cell, long *rows)
     const long from = k == 0 ? z
         : z > span           ? z - span
                              : 0,
-               to = z + span < c->n[2] ? z + span : c->n[2] - 1;
+               to = last + span < c->n[2] ? last + span : c->n[2] - 1;
     c->range[2 * many] = c->first[column + from];
     c->range[2 * many + 1] = c->first[column + to + 1];
     *rows += c->range[2 * many + 1] - c->range[2 * many];
@@ -143,22 +163,49 @@ static int ranges_of(const sd_ewald_cells *c, const int *cell, long *rows)
   return many;
 }
 
-sd_status sd_ewald_cells_walk(sd_ewald_cells *c, sd_ewald_visit *visit, void *ctx)
+/* Rows from `row` on that are a bunch; ends at `end`, where its column does */
+static int bunch_end(const sd_ewald_cells *c, int row, int end, int most)
 {
-  long rows;
-  int cell[3], next = 0;
+  double first[3], x[3];
+  int next = row + 1;
+  sd_ewald_cells_at(c, row, first);
+  for (; next < end && next < row + most; next++) {
+    sd_ewald_cells_at(c, next, x);
+    for (int d = 0; d < 3; d++)
+      if (fabs(x[d] - first[d]) > 0.5 * (d < 2 ? 1 : 2) * c->reach) return next;
+  }
+  return next;
+}
+
+/* Column x, y of cells */
+static sd_status walk_column(sd_ewald_cells *c, int *cell, int most, sd_ewald_visit *visit, void *ctx)
+{
+  const int *first = c->first + ((long) cell[0] * c->n[1] + cell[1]) * c->n[2], end = first[c->n[2]];
+  int ranges = 0, known = -1;
+  long room = 0;
+  cell[2] = 0;
+  for (int row = first[0], next; row < end; row = next) {
+    next = bunch_end(c, row, end, most);
+    int last = cell[2];
+    while (first[last + 1] < next) last++;
+    if (first[cell[2] + 1] <= row || last != known) {
+      while (first[cell[2] + 1] <= row) cell[2]++;
+      ranges = ranges_of(c, cell, last, &room);
+      known = last;
+    }
+    c->range[0] = row + 1;
+    const sd_status status = visit(ctx, row, next, ranges, room);
+    if (status != SD_OK) return status;
+  }
+  return SD_OK;
+}
+
+sd_status sd_ewald_cells_walk(sd_ewald_cells *c, int most, sd_ewald_visit *visit, void *ctx)
+{
+  int cell[3];
   sd_status status = find_columns(c) ? SD_OK : SD_ENOMEMORY;
   for (cell[0] = 0; cell[0] < c->n[0]; cell[0]++)
-    for (cell[1] = 0; cell[1] < c->n[1]; cell[1]++)
-      for (cell[2] = 0; cell[2] < c->n[2]; cell[2]++) {
-        const int end = c->first[((long) cell[0] * c->n[1] + cell[1]) * c->n[2] + cell[2] + 1];
-        if (next == end) continue;
-        const int ranges = ranges_of(c, cell, &rows);
-        for (; next < end && status == SD_OK; next++) {
-          c->range[0] = next + 1;
-          status = visit(ctx, next, ranges, rows);
-        }
-        if (status != SD_OK) return status;
-      }
+    for (cell[1] = 0; cell[1] < c->n[1] && status == SD_OK; cell[1]++)
+      status = walk_column(c, cell, most, visit, ctx);
   return status;
 }

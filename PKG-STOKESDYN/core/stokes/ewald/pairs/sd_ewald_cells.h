@@ -2,7 +2,8 @@
  * spheres, or middles of groups of them.
  *
  * Rows are the places that take part, in order of cells. Each pair is found once, by the row that comes
- * first: later rows near it stand in few ranges of rows, columns of cells along z. */
+ * first: later rows near it stand in few ranges of rows, columns of cells along z. Rows that follow each
+ * other and are close may be asked about in bunches: what is near one is near most of the others. */
 #ifndef SD_EWALD_CELLS_H
 #define SD_EWALD_CELLS_H
 
@@ -35,10 +36,15 @@ typedef struct {
 sd_status sd_ewald_cells_sort(sd_ewald_cells *c, const double *x, const double *there, int count,
                               double reach, double *centre);
 
-/* One row after the other: visit(ctx, row, ranges, most) for later rows that may be near it, those of so
- * many c->range, and at most so many rows. SD_OK, SD_ENOMEMORY or what visit says. */
-typedef sd_status sd_ewald_visit(void *ctx, int row, int ranges, long most);
-sd_status sd_ewald_cells_walk(sd_ewald_cells *c, sd_ewald_visit *visit, void *ctx);
+/* The rows of each cell along z, so that bunches of them are close */
+void sd_ewald_cells_order(sd_ewald_cells *c);
+
+/* One bunch of up to `most` rows after the other: visit(ctx, row, end, ranges, room) for rows behind `row`,
+ * which is its first, that may be near one of it; those of so many c->range, and at most so many rows. Two
+ * rows of a bunch are no farther from each other than the reach in any direction. SD_OK, SD_ENOMEMORY or
+ * what visit says. */
+typedef sd_status sd_ewald_visit(void *ctx, int row, int end, int ranges, long room);
+sd_status sd_ewald_cells_walk(sd_ewald_cells *c, int most, sd_ewald_visit *visit, void *ctx);
 
 static inline void sd_ewald_cells_at(const sd_ewald_cells *c, int row, double *x)
 {

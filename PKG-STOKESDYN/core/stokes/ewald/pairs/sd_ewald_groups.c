@@ -131,7 +131,7 @@ static int groups_found(finder *f, int row, int ranges)
   sd_ewald_cells *c = &g->cells;
   double x[3];
   sd_ewald_cells_at(c, row, x);
-  return (int) f->pairs->doubles->search(c->centre, c->rows, c->range, ranges, x, c->reach * c->reach, g->near);
+  return (int) f->pairs->doubles->search(c->centre, c->rows, c->range, ranges, x, 1, c->reach * c->reach, g->near);
 }
 
 /* Point by point */
@@ -146,8 +146,9 @@ static sd_status list_points(finder *f, int row, int found)
     if (!sd_extend(&p->neighbor, sizeof(int), (size_t) (f->many + points + 3 * SD_FULL), &p->neighbor_room))
       return SD_ENOMEMORY;
     g->range[0] = k + 1 < g->range[1] ? k + 1 : g->range[1];
+    p->begin[k] = k;
     p->first[k] = f->many;
-    f->many = sd_ewald_pairs_near(p, k, many, g->range, f->many);
+    f->many = sd_ewald_pairs_near(p, k, k + 1, many, g->range, f->many);
   }
   return SD_OK;
 }
@@ -183,8 +184,9 @@ static sd_status list_groups(finder *f, int row, int found)
   return SD_OK;
 }
 
-static sd_status visit_group(void *ctx, int row, int ranges, long most)
+static sd_status visit_group(void *ctx, int row, int end, int ranges, long most)
 {
+  (void) end;
   finder *f = ctx;
   sd_ewald_groups *g = &f->pairs->groups;
   const size_t room = (size_t) most + SD_FULL;
@@ -208,9 +210,11 @@ static void make_block(const sd_ewald_pairs *p, int first, int points, double *b
 {
   sd_near_part part = sd_ewald_pairs_part(p);
   double row[8 * (SD_GROUP_POINTS + 1)], u[4 * (SD_GROUP_POINTS + 1)];
+  int begin[SD_GROUP_POINTS + 1] = {0};
   long start[SD_GROUP_POINTS + 1] = {0};
   int neighbor[2 * SD_FULL * SD_GROUP_POINTS];
   for (int k = 0; k < points; k++) {
+    begin[k + 1] = k + 1;
     start[k + 1] = start[k];
     for (int j = k + 1; j < points; j++) neighbor[start[k + 1]++] = j;
     while (start[k + 1] % SD_FULL) neighbor[start[k + 1]++] = points;
@@ -221,7 +225,8 @@ static void make_block(const sd_ewald_pairs *p, int first, int points, double *b
     for (int d = 0; d < 3; d++) row[8 * k + d] = i < 0 ? SD_NOWHERE : p->scale * p->spheres.x[3 * i + d];
     row[8 * k + 3] = i < 0 ? 0.0 : p->scale * p->spheres.a[i];
   }
-  part.rows = points;
+  part.bunches = points;
+  part.begin = begin;
   part.first = start;
   part.neighbor = neighbor;
   part.row = row;
@@ -270,8 +275,12 @@ sd_status sd_ewald_groups_find(sd_ewald_pairs *p, const sd_groups *groups, int n
   finder f = {.pairs = p, .groups = groups, .n = n};
   if (p->by_groups && !sd_reserve(&g->begin, sizeof(long), (size_t) g->cells.rows + 1, &g->begin_room))
     return SD_ENOMEMORY;
-  const sd_status status = sd_ewald_cells_walk(&g->cells, visit_group, &f);
-  (p->by_groups ? g->begin : p->first)[p->by_groups ? g->cells.rows : p->rows] = f.many;
+  const sd_status status = sd_ewald_cells_walk(&g->cells, 1, visit_group, &f);
+  if (p->by_groups) g->begin[g->cells.rows] = f.many;
+  else {
+    p->bunches = p->begin[p->rows] = p->rows;
+    p->first[p->rows] = f.many;
+  }
   return status == SD_OK ? make_blocks(&f) : status;
 }
 

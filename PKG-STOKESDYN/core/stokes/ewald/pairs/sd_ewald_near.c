@@ -4,19 +4,22 @@
 
 #include "sd_constants.h"
 
-long sd_ewald_pairs_near(sd_ewald_pairs *p, int row, int ranges, const int *range, long many)
+long sd_ewald_pairs_near(sd_ewald_pairs *p, int row, int end, int ranges, const int *range, long many)
 {
-  const double range2 = p->ewald.range * p->ewald.range, *centre = sd_ewald_centres(p) + row;
-  const double x[3] = {centre[0], centre[p->rows], centre[2 * (long) p->rows]};
+  const double range2 = p->ewald.range * p->ewald.range, *centre = sd_ewald_centres(p);
+  double x[3 * SD_BUNCH];
+  for (int k = row; k < end; k++)
+    for (long d = 0; d < 3; d++) x[3 * (k - row) + d] = centre[d * p->rows + k];
   int *list = p->neighbor + many;
-  long found = p->doubles->search(sd_ewald_centres(p), p->rows, range, ranges, x, range2, list);
+  long found = p->doubles->search(centre, p->rows, range, ranges, x, end - row, range2, list);
   while (found % p->full) list[found++] = p->rows;
   return many + found;
 }
 
 sd_near_part sd_ewald_pairs_part(const sd_ewald_pairs *p)
 {
-  sd_near_part k = {.rows = p->rows,
+  sd_near_part k = {.bunches = p->bunches,
+                    .begin = p->begin,
                     .width = p->width,
                     .first = p->first,
                     .neighbor = p->neighbor,

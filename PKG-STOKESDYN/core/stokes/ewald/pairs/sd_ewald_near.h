@@ -52,9 +52,9 @@ typedef struct sd_ewald_pairs {
   int equal;
   /* our own among them: [n] rows in order of cells */
   int n, *target;
-  /* each pair once, by the row that comes first, and no two ghosts: [rows + 1] neighbours of a row; or by
-   * groups, and then not here */
-  int by_groups;
+  /* each pair once, by the row that comes first: rows in bunches of up to so many [bunches + 1], and
+   * [bunches + 1] neighbours of one (sd_near_part); or by groups, and then not here */
+  int by_groups, most, bunches, *begin;
   long *first;
   int *neighbor;
   /* lists are filled up to a multiple of so many, whole vectors of every set */
@@ -64,7 +64,7 @@ typedef struct sd_ewald_pairs {
   size_t bytes;
   void *row, *torque_row, *u, *waves;
   double *memory;
-  size_t room, sphere_room, target_room, first_room, neighbor_room;
+  size_t room, sphere_room, target_room, begin_room, first_room, neighbor_room;
   /* rows are found by these: one by one, or where they stand in groups, by groups */
   sd_ewald_cells cells;
   sd_ewald_groups groups;
@@ -85,9 +85,9 @@ static inline double sd_ewald_pairs_steps(const sd_ewald_pairs *p)
   return 0x1p30 / p->ewald.range;
 }
 
-/* Neighbours of a row among so many ranges of rows, behind the first `many` of all; returns how many there
- * are then. And the kernels' table: lengths scaled, and times 8 pi. */
-long sd_ewald_pairs_near(sd_ewald_pairs *p, int row, int ranges, const int *range, long many);
+/* Neighbours of a bunch, rows up to `end`, among so many ranges of rows, behind the first `many` of all;
+ * returns how many there are then. And the kernels' table: lengths scaled, and times 8 pi. */
+long sd_ewald_pairs_near(sd_ewald_pairs *p, int row, int end, int ranges, const int *range, long many);
 sd_near_part sd_ewald_pairs_part(const sd_ewald_pairs *p);
 
 SD_END_C

@@ -21,29 +21,28 @@ INLINE void fetch_group(const real *rows, const real *sums, long row)
 }
 
 /* The group itself: what its other points do to each */
-INLINE void near_within(int equal, int degree, const near_constants *all_pairs, const near_first *first,
-                        int points, const vec at[8], vec u[SD_GROUP_POINTS][3])
+INLINE void near_within(int equal, int degree, const near_constants *all_pairs, const vec at[8],
+                        near_bunch *b)
 {
-  for (int q = 0; q < points; q++) {
+  for (int q = 0; q < b->rows; q++) {
     const yes_no itself = load_any(row_of_lane) == all((real) q);
     vec f, h, d[3], F[3];
-    near_radial(equal, 1, degree, all_pairs, first + q, at, d, &f, &h);
+    near_radial(equal, 1, degree, all_pairs, b->row + q, at, d, &f, &h);
     for (int c = 0; c < 3; c++) F[c] = where(itself, all(0.0), at[4 + c]);
-    near_add(f, h, d, F, u[q]);
+    near_add(f, h, d, F, b->u[q]);
   }
 }
 
 /* Another group: v is what it feels of the points that are near it. */
-INLINE void near_between(int equal, int degree, const near_constants *all_pairs, const near_first *first,
-                         unsigned near, const vec at[8], vec u[SD_GROUP_POINTS][3], vec v[3])
+INLINE void near_between(int equal, int degree, const near_constants *all_pairs, unsigned near,
+                         const vec at[8], near_bunch *b, vec v[3])
 {
   for (; near; near &= near - 1) {
     const int q = __builtin_ctz(near);
-    vec f, h, d[3], G[3];
-    near_radial(equal, 1, degree, all_pairs, first + q, at, d, &f, &h);
-    near_add(f, h, d, at + 4, u[q]);
-    near_all_forces(first + q, G);
-    near_add(f, h, d, G, v);
+    vec f, h, d[3];
+    near_radial(equal, 1, degree, all_pairs, b->row + q, at, d, &f, &h);
+    near_add(f, h, d, at + 4, b->u[q]);
+    near_add_of(b->row + q, f, h, d, v);
   }
 }
 
@@ -54,17 +53,9 @@ INLINE void near_group_forces(int equal, int degree, const sd_near_part *p, cons
   near_polynomials_of(p, &shared);
   const near_constants all_pairs = near_constants_of(p);
   for (int k = 0; k < g->groups; k++) {
-    const int begin = g->first[k], points = g->first[k + 1] - begin;
-    near_first first[SD_GROUP_POINTS];
-    real mine[SD_GROUP_POINTS][4 * SD_RADIAL_TERMS];
-    vec u[SD_GROUP_POINTS][3];
+    near_bunch b;
     if (g->begin[k] == g->begin[k + 1]) continue;
-    for (int q = 0; q < points; q++) {
-      const real *own = rows + 8 * (long) (begin + q);
-      if (!equal) polynomials_of_target(p, ((double) own[3] * own[3] - p->ref2) / 6.0, degree, mine[q]);
-      first[q] = near_first_of(own, equal ? shared.of[0] : mine[q]);
-      u[q][0] = u[q][1] = u[q][2] = all(0.0);
-    }
+    near_bunch_begin(equal, degree, p, &shared, g->first[k], g->first[k + 1] - g->first[k], &b);
     for (long e = g->begin[k]; e < g->begin[k + 1]; e++) {
       const int other = g->near[e].other;
       const long row = g->first[other];
@@ -72,15 +63,14 @@ INLINE void near_group_forces(int equal, int degree, const sd_near_part *p, cons
       const yes_no there = load_group(rows + 8 * row, g->first[other + 1] - (int) row, at);
       if (e + 1 < g->begin[k + 1]) fetch_group(rows, p->u, g->first[g->near[e + 1].other]);
       if (other == k) {
-        near_within(equal, degree, &all_pairs, first, points, at, u);
+        near_within(equal, degree, &all_pairs, at, &b);
         continue;
       }
-      near_between(equal, degree, &all_pairs, first, g->near[e].points, at, u, v);
+      near_between(equal, degree, &all_pairs, g->near[e].points, at, &b, v);
       for (int c = 0; c < 3; c++) v[c] = where(there, v[c], all(0.0));
       add_to_rows_of_four((real *) p->u + 4 * row, v);
     }
-    for (int q = 0; q < points; q++)
-      for (int c = 0; c < 3; c++) ((real *) p->u)[4 * (long) (begin + q) + c] += total(u[q][c]);
+    near_bunch_end(&b, p->u);
   }
 }
 

@@ -2,30 +2,49 @@
  * pair in open space, polynomials in t = 2 r^2/range^2 - 1. Included by sd_ewald_kernels.c. */
 
 #ifndef SD_SINGLE
+INLINE vec distance_squared(const vec *a, const vec *b)
+{
+  const vec dx = a[0] - b[0], dy = a[1] - b[1], dz = a[2] - b[2];
+  return dx * dx + dy * dy + dz * dz;
+}
+
 /* The lanes beyond the end, of other rows, are cut off; centres have room for them. */
-INLINE long search_range(const double *px, long stride, int begin, int end, const vec *x, vec most,
-                         int *list)
+INLINE long search_range(const double *px, long stride, int begin, int end, const vec (*x)[3], int places,
+                         vec most, int *list)
 {
   const double *py = px + stride, *pz = py + stride;
   long many = 0;
   for (int j = begin; j < end; j += LANES) {
-    const vec dx = load_any(px + j) - x[0], dy = load_any(py + j) - x[1];
-    const vec dz = load_any(pz + j) - x[2];
-    unsigned hits = bits(dx * dx + dy * dy + dz * dz <= most);
+    const vec at[3] = {load_any(px + j), load_any(py + j), load_any(pz + j)};
+    vec least = distance_squared(at, x[0]);
+    for (int q = 1; q < places; q++) least = smaller(least, distance_squared(at, x[q]));
+    unsigned hits = bits(least <= most);
     if (end - j < LANES) hits &= (1u << (end - j)) - 1;
     many += keep_next(list + many, j, hits);
   }
   return many;
 }
 
-static long search(const double *centre, long stride, const int *ranges, int count, const double *x,
-                   double distance2, int *list)
+INLINE long search_places(const double *centre, long stride, const int *ranges, int count, const double *x,
+                          int places, double distance2, int *list)
 {
-  const vec at[3] = {all(x[0]), all(x[1]), all(x[2])}, most = all(distance2);
+  vec at[SD_BUNCH][3];
   long many = 0;
+  for (int q = 0; q < places; q++)
+    for (int d = 0; d < 3; d++) at[q][d] = all(x[3 * q + d]);
   for (int k = 0; k < count; k++)
-    many += search_range(centre, stride, ranges[2 * k], ranges[2 * k + 1], at, most, list + many);
+    many += search_range(centre, stride, ranges[2 * k], ranges[2 * k + 1], at, places, all(distance2),
+                         list + many);
   return many;
+}
+
+/* One place, and a full bunch, in loops of their own */
+static long search(const double *centre, long stride, const int *ranges, int count, const double *x,
+                   int places, double distance2, int *list)
+{
+  return places == 1       ? search_places(centre, stride, ranges, count, x, 1, distance2, list)
+      : places == SD_BUNCH ? search_places(centre, stride, ranges, count, x, SD_BUNCH, distance2, list)
+                           : search_places(centre, stride, ranges, count, x, places, distance2, list);
 }
 
 #endif
@@ -34,6 +53,15 @@ static long search(const double *centre, long stride, const int *ranges, int cou
 enum { SINGLE = 1 };
 #else
 enum { SINGLE = 0 };
+#endif
+
+/* Rows of a bunch: with long vectors, reading and writing the rows of neighbours takes longer than the pairs;
+ * with shorter ones it does not, and pairs beyond the range would cost more than is saved. Groups are
+ * longer. */
+#if LANES >= 16
+enum { BUNCH = SD_BUNCH, NEAR_ROWS = SD_GROUP_POINTS };
+#else
+enum { BUNCH = 1, NEAR_ROWS = BUNCH };
 #endif
 
 /* COUNT polynomials of one degree at once: coefficient [COUNT][stride] */
@@ -71,10 +99,11 @@ static void near_polynomials_of(const sd_near_part *p, near_polynomials *c)
     for (int k = 0; k <= p->degree; k++) c->of[f][k] = (real) p->coefficient[f][k];
 }
 
-/* What the kernels of forces know of all pairs, and of the first sphere of one. c: its polynomials, those of
- * all where radii are equal; G: its force */
+/* What the kernels of forces know of all pairs, and of the first sphere of one. ends2: where they end if
+ * nobody has looked before; a hair beyond the range, since images of one sphere may be just there, and
+ * rounding would decide. c: its polynomials, those of all where radii are equal; G: its force */
 typedef struct {
-  vec unit, range2, twice, ref2;
+  vec unit, range2, ends2, twice, ref2;
   alike of_all;
 } near_constants;
 
@@ -85,8 +114,8 @@ typedef struct {
 
 INLINE near_constants near_constants_of(const sd_near_part *p)
 {
-  return (near_constants){all((real) p->unit), all((real) p->range2), all((real) (2.0 / p->range2)),
-                          all((real) p->ref2), alike_of((real) sqrt(p->ref2))};
+  return (near_constants){all((real) p->unit), all((real) p->range2), all((real) (p->range2 * (1.0 + 1e-6))),
+                          all((real) (2.0 / p->range2)), all((real) p->ref2), alike_of((real) sqrt(p->ref2))};
 }
 
 INLINE near_first near_first_of(const real *own, const real *c)
@@ -96,7 +125,7 @@ INLINE near_first near_first_of(const real *own, const real *c)
 
 /* f, h of pairs with spheres whose rows are the columns `at`, d apart. equal: all radii are a_ref, and two
  * polynomials do; in floats the arithmetic of a pair is so short that a branch costs more than the formulas
- * on both its sides. ends: they are 0 beyond the range; without it all pairs are within */
+ * on both its sides. ends: they are 0 beyond ends2; without it all pairs are within the range */
 INLINE void near_radial(int equal, int ends, int degree, const near_constants *k, const near_first *i,
                         const vec at[8], vec d[3], vec *f, vec *h)
 {
@@ -118,8 +147,8 @@ INLINE void near_radial(int equal, int ends, int degree, const near_constants *k
     *h -= D[1] - b * D[3];
   }
   if (!ends) return;
-  *f = where(r2 <= k->range2, *f, all(0.0));
-  *h = where(r2 <= k->range2, *h, all(0.0));
+  *f = where(r2 <= k->ends2, *f, all(0.0));
+  *h = where(r2 <= k->ends2, *h, all(0.0));
 }
 
 /* u += what forces F do to one sphere, d from them to it */
@@ -129,45 +158,83 @@ INLINE void near_add(vec f, vec h, const vec d[3], const vec F[3], vec u[3])
   for (int c = 0; c < 3; c++) u[c] = (u[c] + f * F[c]) + e * d[c];
 }
 
-INLINE void near_all_forces(const near_first *i, vec G[3])
+/* u += what one sphere does to those that are d from it the other way */
+INLINE void near_add_of(const near_first *i, vec f, vec h, const vec d[3], vec u[3])
 {
-  for (int c = 0; c < 3; c++) G[c] = all(i->G[c]);
+  const vec G[3] = {all(i->G[0]), all(i->G[1]), all(i->G[2])};
+  const vec g = h * (d[0] * G[0] + d[1] * G[1] + d[2] * G[2]);
+  for (int c = 0; c < 3; c++) u[c] = (u[c] + g * d[c]) + f * G[c];
+}
+
+/* Rows from `begin` on that are taken together, and what they feel */
+typedef struct {
+  int begin, rows;
+  near_first row[NEAR_ROWS];
+  vec u[NEAR_ROWS][3];
+  real of_row[NEAR_ROWS][4 * SD_RADIAL_TERMS];
+} near_bunch;
+
+INLINE void near_bunch_begin(int equal, int degree, const sd_near_part *p, const near_polynomials *shared,
+                             int begin, int rows, near_bunch *b)
+{
+  b->begin = begin;
+  b->rows = rows;
+  for (int q = 0; q < rows; q++) {
+    const real *own = (const real *) p->row + 8 * (long) (begin + q);
+    if (!equal) polynomials_of_target(p, ((double) own[3] * own[3] - p->ref2) / 6.0, degree, b->of_row[q]);
+    b->row[q] = near_first_of(own, equal ? shared->of[0] : b->of_row[q]);
+    b->u[q][0] = b->u[q][1] = b->u[q][2] = all(0.0);
+  }
+}
+
+INLINE void near_bunch_end(const near_bunch *b, real *sums)
+{
+  for (int q = 0; q < b->rows; q++)
+    for (int c = 0; c < 3; c++) sums[4 * (long) (b->begin + q) + c] += total(b->u[q][c]);
+}
+
+/* What a bunch and a vector of its neighbours do to each other: v is what these feel. own: the first of them
+ * are the bunch's rows behind its first, and a row has pairs with those behind it. */
+INLINE void near_bunch_add(int equal, int own, int degree, const near_constants *k, near_bunch *b,
+                           const vec at[8], vec v[3])
+{
+  for (int q = 0; q < b->rows; q++) {
+    vec f, h, d[3];
+    near_radial(equal, BUNCH > 1, degree, k, b->row + q, at, d, &f, &h);
+    if (own) {
+      const yes_no behind = (vec) LANEWISE(NUMBER, 0) >= all((real) q);
+      f = where(behind, f, all(0.0));
+      h = where(behind, h, all(0.0));
+    }
+    near_add(f, h, d, at + 4, b->u[q]);
+    near_add_of(b->row + q, f, h, d, v);
+  }
 }
 
 INLINE void near_forces(int equal, int degree, const sd_near_part *p)
 {
-  const real *rows = p->row;
-  real *sums = p->u;
   near_polynomials shared;
   near_polynomials_of(p, &shared);
   const near_constants all_pairs = near_constants_of(p);
-  for (int i = 0; i < p->rows; i++) {
-    const real *own = rows + 8 * (long) i;
-    const long end = p->first[i + 1];
-    real mine[4 * SD_RADIAL_TERMS];
-    const real *c = shared.of[0];
-    if (!equal && p->first[i] < end) {
-      polynomials_of_target(p, ((double) own[3] * own[3] - p->ref2) / 6.0, degree, mine);
-      c = mine;
-    }
-    const near_first first = near_first_of(own, c);
-    vec u[3] = {all(0.0), all(0.0), all(0.0)}, G[3];
-    near_all_forces(&first, G);
-    for (long k = p->first[i]; k < end; k += LANES) {
+  for (int i = 0; i < p->bunches; i++) {
+    const long first = p->first[i], end = p->first[i + 1];
+    near_bunch b;
+    if (first == end) continue;
+    const int begin = p->begin[i], rows = BUNCH == 1 ? 1 : p->begin[i + 1] - begin;
+    near_bunch_begin(equal, degree, p, &shared, begin, rows, &b);
+    for (long k = first; k < end; k += LANES) {
       const int *j = p->neighbor + k;
-      vec at[8], f, h, d[3];
-      gather_eight(rows, j, at);
-      near_radial(equal, 0, degree, &all_pairs, &first, at, d, &f, &h);
-      near_add(f, h, d, at + 4, u);
-      const vec g = h * (d[0] * G[0] + d[1] * G[1] + d[2] * G[2]);
-      vec v[4] = {f * G[0] + g * d[0], f * G[1] + g * d[1], f * G[2] + g * d[2], all(0.0)};
-      add_to_rows(sums, 4, j, v);
+      vec at[8], v[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
+      gather_eight(p->row, j, at);
+      if (BUNCH > 1 && k == first) near_bunch_add(equal, 1, degree, &all_pairs, &b, at, v);
+      else near_bunch_add(equal, 0, degree, &all_pairs, &b, at, v);
+      add_to_rows(p->u, 4, j, v);
     }
-    for (int d = 0; d < 3; d++) sums[4 * (long) i + d] += total(u[d]);
+    near_bunch_end(&b, p->u);
   }
 }
 
-/* With torques all eight; of equal radii those that b is not a factor of */
+/* With torques all eight; of equal radii those that b is not a factor of. A bunch is one row. */
 INLINE void near_torques(int equal, int degree, const sd_near_part *p)
 {
   const real *rows = p->row, *turns = p->torque_row;
@@ -178,7 +245,7 @@ INLINE void near_torques(int equal, int degree, const sd_near_part *p)
   const vec one = all(1.0), ref2 = all((real) p->ref2);
   const vec quarter = all(0.25), sixth = all(1.0 / 6.0);
   const alike of_all = alike_of((real) sqrt(p->ref2));
-  for (int i = 0; i < p->rows; i++) {
+  for (int i = 0; i < p->bunches; i++) {
     const real *own = rows + 8 * (long) i, *turn = turns + 4 * (long) i;
     const vec x = all(own[0]), y = all(own[1]), z = all(own[2]), a = all(own[3]);
     const vec bi = (a * a - ref2) * sixth;

@@ -19,6 +19,7 @@ void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
   p->full = (int) (SD_FULL * sizeof(double) / p->bytes);
   p->ewald = *e;
   p->width = width;
+  p->most = width == 3 ? kernels->bunch : 1;
   p->unit = 1.0;
   p->degree = sd_near_degree(sd_radial_fit(e, width, p->coefficient[0]));
   sd_radial(e, 0.0, p->origin);
@@ -28,6 +29,7 @@ void sd_ewald_pairs_free(sd_ewald_pairs *p)
 {
   free(p->sphere);
   free(p->target);
+  free(p->begin);
   free(p->first);
   free(p->neighbor);
   free(p->memory);
@@ -66,6 +68,7 @@ static sd_status sort_spheres(sd_ewald_pairs *p, int n, int n_all)
   const sd_status status =
       sd_ewald_cells_sort(&p->cells, p->spheres.x, p->spheres.a, n_all, p->ewald.range, p->u);
   if (status != SD_OK) return status;
+  if (p->most > 1) sd_ewald_cells_order(&p->cells);
   p->rows = p->cells.rows;
   memcpy(p->sphere, p->cells.place, sizeof(int) * (size_t) p->rows);
   p->n = 0;
@@ -90,14 +93,16 @@ static void pairs_fill_rows(sd_ewald_pairs *p)
 
 /* --- neighbours --- */
 
-/* Of the neighbours of a ghost, from `begin` on, those that are ours; returns their end. */
-static long keep_ours(sd_ewald_pairs *p, int n, long begin, long end)
+/* Of the neighbours of ghosts, from `begin` on, those that are ours, and the first, which are of the same
+ * bunch; returns their end. */
+static long keep_ours(sd_ewald_pairs *p, int n, long begin, int same, long end)
 {
-  long ours = begin;
-  for (long k = begin; k < end; k++) {
+  long ours = begin + same;
+  for (long k = ours; k < end; k++) {
     const int row = p->neighbor[k];
     if (row < p->rows && p->sphere[row] < n) p->neighbor[ours++] = row;
   }
+  if (ours == begin + same) return begin;
   while ((ours - begin) % p->full) p->neighbor[ours++] = p->rows;
   return ours;
 }
@@ -108,16 +113,34 @@ typedef struct {
   long many;
 } finder;
 
-static sd_status visit_sphere(void *ctx, int row, int ranges, long most)
+static int all_ghosts(const sd_ewald_pairs *p, int n, int row, int end)
+{
+  while (row < end && p->sphere[row] >= n) row++;
+  return row == end;
+}
+
+static sd_status visit_bunch(void *ctx, int row, int end, int ranges, long room)
 {
   finder *f = ctx;
   sd_ewald_pairs *p = f->pairs;
-  if (!sd_extend(&p->neighbor, sizeof(int), (size_t) (f->many + most + 3 * SD_FULL), &p->neighbor_room))
+  if (!sd_extend(&p->neighbor, sizeof(int), (size_t) (f->many + room + 3 * SD_FULL), &p->neighbor_room))
     return SD_ENOMEMORY;
-  p->first[row] = f->many;
-  const long end = sd_ewald_pairs_near(p, row, ranges, p->cells.range, f->many);
-  f->many = p->sphere[row] < f->n ? end : keep_ours(p, f->n, f->many, end);
+  p->begin[p->bunches] = row;
+  p->first[p->bunches++] = f->many;
+  const long last = sd_ewald_pairs_near(p, row, end, ranges, p->cells.range, f->many);
+  f->many = all_ghosts(p, f->n, row, end) ? keep_ours(p, f->n, f->many, end - row - 1, last) : last;
   return SD_OK;
+}
+
+/* Pairs of ghosts, which nobody wants, are there only where one bunch holds ghosts and spheres of ours. */
+static sd_status find_bunches(sd_ewald_pairs *p, int n)
+{
+  finder f = {p, n, 0};
+  p->bunches = 0;
+  const sd_status status = sd_ewald_cells_walk(&p->cells, p->most, visit_bunch, &f);
+  p->begin[p->bunches] = p->rows;
+  p->first[p->bunches] = f.many;
+  return status;
 }
 
 sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, const sd_groups *groups, int n,
@@ -131,13 +154,10 @@ sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, const sd_
   pairs_fill_rows(p);
   p->groups.own = 0;
   p->by_groups = grouped && p->kernels->near_groups;
-  if (!p->by_groups && !sd_reserve(&p->first, sizeof(long), (size_t) p->rows + 1, &p->first_room))
+  if (!p->by_groups && (!sd_reserve(&p->begin, sizeof(int), (size_t) p->rows + 1, &p->begin_room) ||
+                        !sd_reserve(&p->first, sizeof(long), (size_t) p->rows + 1, &p->first_room)))
     return SD_ENOMEMORY;
-  if (grouped) return sd_ewald_groups_find(p, groups, n);
-  finder f = {p, n, 0};
-  const sd_status found = sd_ewald_cells_walk(&p->cells, visit_sphere, &f);
-  p->first[p->rows] = f.many;
-  return found;
+  return grouped ? sd_ewald_groups_find(p, groups, n) : find_bunches(p, n);
 }
 
 /* --- product --- */
