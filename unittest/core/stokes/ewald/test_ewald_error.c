@@ -174,8 +174,8 @@ typedef struct {
   double share, ratio, phi;
 } two_sizes;
 
-/* Error over the tolerance under random forces that are as large as radii: of U over rms of F/(6 pi a), of W over rms of
- * T/(8 pi a^3); the larger of both */
+/* Error over the tolerance under random forces that are as large as radii: of U over rms of F/(6 pi a), of W over rms
+ * of T/(8 pi a^3); the larger of both */
 static double error_of_two_sizes(const two_sizes *s)
 {
   enum { MOST = 3000 };
@@ -204,8 +204,8 @@ static double error_of_two_sizes(const two_sizes *s)
   }
   const double of_U = sqrt(off[0] / bare[0]), of_W = s->width == 6 ? sqrt(off[1] / bare[1]) : 0.0;
   if (getenv("STOKESDYN_SHOW"))
-    printf("%d spheres, %g of radius %g, phi %g, width %d, digits %d: %.2f %.2f\n", s->n, s->share, s->ratio, s->phi, s->width,
-           s->digits, of_U / tolerance, of_W / tolerance);
+    printf("%d spheres, %g of radius %g, phi %g, width %d, digits %d: %.2f %.2f\n", s->n, s->share, s->ratio, s->phi,
+           s->width, s->digits, of_U / tolerance, of_W / tolerance);
   return fmax(of_U, of_W) / tolerance;
 }
 
@@ -214,12 +214,13 @@ static void all_keep_the_tolerance(const two_sizes *scenes, int many)
   for (int k = 0; k < many; k++) assert_true(error_of_two_sizes(scenes + k) < 1.0);
 }
 
-/* Near parts of 800 neighbours have polynomials that are right to less than a tenth of the tolerance. As Gaussians the dense
- * scene had 1.09 tolerances, and spins 2.7. */
+/* Near parts of 800 neighbours have polynomials that are right to less than a tenth of the tolerance. As Gaussians the
+ * dense scene had 1.09 tolerances, and spins 2.7. */
 static void equal_spheres_keep_the_tightest_tolerances(void **state)
 {
   (void) state;
-  const two_sizes scenes[] = {{1500, 3, 12, 1.0, 1.0, 0.2}, {1500, 3, 12, 1.0, 1.0, 0.45}, {600, 6, 11, 1.0, 1.0, 0.45}};
+  const two_sizes scenes[] = {{1500, 3, 12, 1.0, 1.0, 0.2}, {1500, 3, 12, 1.0, 1.0, 0.45},
+                              {600, 6, 11, 1.0, 1.0, 0.45}};
   all_keep_the_tolerance(scenes, 3);
 }
 

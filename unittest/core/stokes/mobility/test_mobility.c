@@ -93,15 +93,16 @@ static scene hard_places(int many, double side, double origin)
   scene s = scene_create(many);
   uint64_t seed = 5;
   for (int i = 0; i < many; i++)
-    scene_set(&s, i, origin + uniform(&seed, 0, side), origin + uniform(&seed, 0, side), origin + uniform(&seed, 0, side),
-              exp(uniform(&seed, 0.0, log(100.0))), 1.3);
+    scene_set(&s, i, origin + uniform(&seed, 0, side), origin + uniform(&seed, 0, side),
+              origin + uniform(&seed, 0, side), exp(uniform(&seed, 0.0, log(100.0))), 1.3);
   for (int i = 0; i + 1 < many; i += 2) /* every other pair at one point */
-    for (int d = 0; d < 3; d++) s.x[3 * i + 3 + d] = s.x[3 * i + d] + (d == 0 && i % 4 == 0 ? s.a[i] + s.a[i + 1] : 0.0);
+    for (int d = 0; d < 3; d++) s.x[3 * i + 3 + d] = s.x[3 * i + d] + (d == 0 && i % 4 == 0 ? s.a[i] + s.a[i + 1] :
+                                                                       0.0);
   return s;
 }
 
-/* A list of everybody is the sum over all: a hundred million radii from the origin, in a box of a million radii, for one sphere
- * and for two at one point */
+/* A list of everybody is the sum over all: a hundred million radii from the origin, in a box of a million radii, for
+ * one sphere and for two at one point */
 static void a_list_knows_hard_places(void **state)
 {
   (void) state;
@@ -116,10 +117,12 @@ static void a_list_knows_hard_places(void **state)
       double F[6 * MANY], u[2][6 * MANY];
       uint64_t seed = 8;
       sd_neighbors near = {0};
-      for (int i = 0; i < width * s.n; i++) F[i] = uniform(&seed, -1, 1) * pow(s.a[i / width], i % width < 3 ? 1.0 : 2.0);
+      for (int i = 0; i < width * s.n; i++) F[i] = uniform(&seed, -1, 1) * pow(s.a[i / width],
+                                                                               i % width < 3 ? 1.0 : 2.0);
       assert_int_equal(sd_neighbors_cutoff(&near, s.x, s.n, s.n, 3.0 * places[k].side + 400.0), SD_OK);
       for (int list = 0; list < 2; list++) {
-        const sd_mobility_scene scene = {.how = {.law = {.tensor = SD_TENSOR_RPY}, .width = width}, .n = s.n, .n_all = s.n,
+        const sd_mobility_scene scene = {.how = {.law = {.tensor = SD_TENSOR_RPY}, .width = width}, .n = s.n,
+                                         .n_all = s.n,
                                          .spheres = {s.x, s.a, s.w}, .pairs = list ? &near.pairs : NULL};
         sd_mobility m = {0};
         assert_int_equal(sd_mobility_place(&m, list ? &sd_mobility_list : &sd_mobility_all_pairs, &scene), SD_OK);

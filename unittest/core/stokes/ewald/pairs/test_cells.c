@@ -47,7 +47,8 @@ static void check(double box, int most)
   static double x[3 * N], centre[3 * N + SD_FULL];
   static seen s;
   uint64_t seed = 3;
-  for (int i = 0; i < 3 * N; i++) x[i] = i % 6 < 3 || i < 6 ? uniform(&seed, 0, box) : x[i - 6] + uniform(&seed, -0.4, 0.4);
+  for (int i = 0; i < 3 * N; i++) x[i] = i % 6 < 3 || i < 6 ? uniform(&seed, 0, box) : x[i - 6] +
+      uniform(&seed, -0.4, 0.4);
   sd_ewald_cells c = {0};
   assert_int_equal(sd_ewald_cells_sort(&c, x, NULL, N, 1.0, centre), SD_OK);
   if (most > 1) sd_ewald_cells_order(&c);
@@ -94,7 +95,8 @@ static void spheres_far_apart_in_a_column_do_not_meet(void **state)
   const sd_isa isa = sd_isa_of(SD_ISA_BEST);
   for (int single = 0; single < 2; single++) {
     sd_ewald_pairs p = {0};
-    sd_ewald_pairs_create(&p, &how, single ? SD_KERNELS_OF(sd_ewald_single, plain, isa) : SD_KERNELS_OF(sd_ewald, plain, isa), 3);
+    sd_ewald_pairs_create(&p, &how, single ? SD_KERNELS_OF(sd_ewald_single, plain, isa) :
+                          SD_KERNELS_OF(sd_ewald, plain, isa), 3);
     assert_int_equal(sd_ewald_pairs_place(&p, &(sd_spheres){x, a, a}, &none, ROW, ROW), SD_OK);
     assert_int_equal(sd_ewald_pairs_load(&p, ROW, F, NULL, NULL, NULL), SD_OK);
     sd_ewald_pairs_apply(&p);

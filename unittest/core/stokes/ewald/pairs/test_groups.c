@@ -133,8 +133,8 @@ static void near_part_is_symmetric(void **state)
   CHECK_NEAR(uF, vG, 1e-13 * size);
 }
 
-/* A hundred million radii from the origin, shells of 1 : 100, two at one point and two in touch: in floats and by groups the
- * digits of doubles, point by point */
+/* A hundred million radii from the origin, shells of 1 : 100, two at one point and two in touch: in floats and by
+ * groups the digits of doubles, point by point */
 static void hard_places_have_the_same_digits(void **state)
 {
   (void) state;
