@@ -92,12 +92,24 @@ typedef struct {
   double coefficient[SD_IMAGE_FUNCTIONS][3][SD_RADIAL_TERMS];
 } sd_image_part;
 
+/* Groups: most points; and of their blocks the numbers of a row, filled up with zeros to whole vectors of
+ * every set */
+enum { SD_GROUP_POINTS = 12, SD_GROUP_ROW = 40 };
+
 /* What windows need of a sphere: its first point on the grid, v of sd_window.h each way, b of
  * sd_radial.h */
 typedef struct {
   int at[3];
   double v[3], b;
 } sd_spread_place;
+
+/* Points that stand side by side: `many` of them, from `first` on, whose windows reach size[3] points of the
+ * grid from at[3] on, at most SD_RUN_WIDE each way. */
+enum { SD_RUN_WIDE = 10 };
+
+typedef struct {
+  int first, many, at[3], size[3];
+} sd_spread_run;
 
 /* Spreading and interpolation. A sphere adds to the row along z at its points p, q of x and y
  *
@@ -114,6 +126,9 @@ typedef struct {
   /* row d: gradient of grid coordinate d, 1/length; its metric xx yy zz xy xz yz */
   double gradient[3][3], metric[6];
   const sd_spread_place *place;
+  /* one after the other, of equal radii without torques: kernels may take these as a whole */
+  int runs;
+  const sd_spread_run *run;
   /* [width n] w F in order of place; or the velocities that come out */
   void *F;
   /* its first point on the grid; numbers from row to row and from layer to layer */
@@ -138,10 +153,6 @@ typedef struct {
  * coordinates, stride apart. */
 typedef long sd_near_search(const double *centre, long stride, const int *ranges, int count,
                             const double *x, int places, double distance2, int *list);
-
-/* Blocks of groups: most points, and the numbers of a row, filled up with zeros to whole vectors of
- * every set */
-enum { SD_GROUP_POINTS = 12, SD_GROUP_ROW = 40 };
 
 struct sd_ewald_kernels {
   /* of a number */

@@ -2,6 +2,7 @@
 #include "periodic.h"
 
 #include "sd_ewald_pairs.h"
+#include "sd_ewald_runs.h"
 #include "sd_grid_internal.h"
 #include "sd_real.h"
 
@@ -216,6 +217,64 @@ static void windows_of_floats_are_those_of_doubles(void **state)
   free(brick);
 }
 
+/* Ten shells of twelve points, the first too wide for a run, the last with a gap in its numbers: all is as that of doubles
+ * one by one. */
+static void points_side_by_side_are_spread_like_any(void **state)
+{
+  (void) state;
+  const cloud c = make(11, 1);
+  const size_t numbers = (size_t) ROW * SIDE * SIDE + 64;
+  double *expected = malloc(sizeof(double) * numbers), first[3 * N];
+  float *brick = malloc(sizeof(float) * numbers), F[3 * N];
+  for (int points = 4; points <= 8; points++) {
+    sd_window w;
+    sd_spread_place place[N];
+    sd_ewald_runs runs = {0};
+    int sphere[N];
+    uint64_t seed = 9;
+    sd_window_fit(points, 2.25 * points, 1e-5, &w);
+    sd_spreading s = spheres_on_a_brick(&c, place, &w, 1, 3);
+    for (int i = 0; i < N; i++) {
+      sphere[i] = i + (i >= N - 6); /* the last shell in two halves */
+      for (int d = 0; d < 3 && i >= 12; d++)
+        place[i].at[d] = place[i / 12 * 12].at[d] / 2 + (int) uniform(&seed, 0, SD_RUN_WIDE - points + 0.99);
+    }
+    for (int d = 0; d < 3; d++) place[0].at[d] = 0; /* and the first point of the first shell far from all others */
+    assert_int_equal(sd_ewald_runs_find(&runs, N, sphere, place, points), SD_OK);
+    assert_true(runs.n >= 10);
+    for (int k = 0, end = 0; k < runs.n; end = runs.run[k].first + runs.run[k].many, k++) {
+      assert_true(runs.run[k].first >= end && runs.run[k].many <= SD_GROUP_POINTS && runs.run[k].first > 0);
+      if (k == runs.n - 1) assert_int_equal(runs.run[k].many, 6);
+    }
+    memset(expected, 0, sizeof(double) * numbers);
+    memcpy(first, c.F, sizeof(first));
+    s.brick = expected;
+    s.F = first;
+    SD_KERNELS_OF(sd_ewald, plain, SD_ISA_PLAIN)->spread(&s);
+    SD_KERNELS_OF(sd_ewald, plain, SD_ISA_PLAIN)->interpolate(&s);
+    double largest = 0.0, fastest = 0.0;
+    for (size_t g = 0; g < numbers; g++) largest = fmax(largest, fabs(expected[g]));
+    for (int i = 0; i < 3 * N; i++) fastest = fmax(fastest, fabs(first[i]));
+    s.runs = runs.n;
+    s.run = runs.run;
+    s.brick = brick;
+    s.F = F;
+    for (int k = -1; k < 3; k++) {
+      const sd_isa isa = k < 0 ? SD_ISA_PLAIN : sets[k];
+      if (!sd_isa_supported(isa)) continue;
+      for (int i = 0; i < 3 * N; i++) F[i] = (float) c.F[i];
+      memset(brick, 0, sizeof(float) * numbers);
+      SD_KERNELS_OF(sd_ewald_single, plain, isa)->spread(&s);
+      for (size_t g = 0; g < numbers; g++) CHECK_NEAR(brick[g], expected[g], 1e-6 * largest);
+      SD_KERNELS_OF(sd_ewald_single, plain, isa)->interpolate(&s);
+      for (int i = 0; i < 3 * N; i++) CHECK_NEAR(F[i], first[i], 1e-6 * fastest);
+    }
+    sd_ewald_runs_free(&runs);
+  }
+  free(expected);
+  free(brick);
+}
+
 static void rows_of_waves_agree(void **state)
 {
   (void) state;
@@ -303,6 +362,7 @@ int main(void)
       cmocka_unit_test(three_terms_do_for_equal_spheres_with_torques),
       cmocka_unit_test(near_parts_of_floats_are_those_of_doubles),
       cmocka_unit_test(windows_of_floats_are_those_of_doubles),
+      cmocka_unit_test(points_side_by_side_are_spread_like_any),
       cmocka_unit_test(rows_of_waves_agree),
       cmocka_unit_test(two_real_lines_are_a_complex_one),
   };

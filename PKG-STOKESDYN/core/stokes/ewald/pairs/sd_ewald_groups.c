@@ -284,11 +284,25 @@ sd_status sd_ewald_groups_find(sd_ewald_pairs *p, const sd_groups *groups, int n
   return status == SD_OK ? make_blocks(&f) : status;
 }
 
+/* Groups are in order of cells, and their points anywhere in memory. */
+static void fetch_numbers(const double *numbers)
+{
+#ifdef SD_HAS_VECTORS
+  enum { LINE = 8 };
+  for (int d = 0; d < COLUMNS; d += LINE) __builtin_prefetch(numbers + d);
+#else
+  (void) numbers;
+#endif
+}
+
 void sd_ewald_groups_apply(const sd_ewald_pairs *p, const double *F, double *u)
 {
+  enum { AHEAD = 3 };
   const sd_ewald_groups *g = &p->groups;
   for (int k = 0; k < g->own; k++) {
-    const long i = g->sphere[k];
+    const long i = g->sphere[k], later = g->sphere[k + AHEAD < g->own ? k + AHEAD : k];
+    fetch_numbers(F + 3 * later);
+    fetch_numbers(u + 3 * later);
     const double w = p->spheres.w[i];
     p->doubles->own_block(g->block + COLUMNS * SD_GROUP_ROW * (long) g->form[k], w * w, F + 3 * i, u + 3 * i);
   }

@@ -118,6 +118,7 @@ void sd_ewald_waves_free(sd_ewald_waves *w)
   sd_wave_free(&w->wave);
   sd_grid_free(&w->grid);
   free(w->place);
+  sd_ewald_runs_free(&w->runs);
   memset(w, 0, sizeof(*w));
 }
 
@@ -221,7 +222,7 @@ static sd_status turn_by(sd_ewald_waves *w, int turn, int *bricks)
 }
 
 /* The grid has its bricks. */
-static void find_terms(sd_ewald_waves *w)
+static sd_status find_terms(sd_ewald_waves *w)
 {
   const sd_grid *g = &w->grid;
   int equal = 1;
@@ -238,6 +239,11 @@ static void find_terms(sd_ewald_waves *w)
   memcpy(s->lo, g->lo, sizeof(s->lo));
   s->row = g->row;
   s->layer = g->layer;
+  const sd_status status = s->terms == 1 ? sd_ewald_runs_find(&w->runs, w->n, w->sphere, w->place, w->window.points)
+                                         : SD_OK;
+  s->runs = s->terms == 1 ? w->runs.n : 0;
+  s->run = w->runs.run;
+  return status;
 }
 
 sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks)
@@ -245,8 +251,7 @@ sd_status sd_ewald_waves_place(sd_ewald_waves *w, int *bricks)
   const int turn = better_turn(w, bricks);
   sd_status status = turn ? turn_by(w, turn, bricks) : SD_OK;
   if (status == SD_OK) status = sd_grid_place(&w->grid, bricks);
-  if (status == SD_OK) find_terms(w);
-  return status;
+  return status == SD_OK ? find_terms(w) : status;
 }
 
 sd_status sd_ewald_waves_meet(sd_ewald_waves *w, const int *brick, sd_status status,
@@ -289,8 +294,7 @@ sd_status sd_ewald_waves_place_whole(sd_ewald_waves *w)
     }
   const sd_status status = sd_grid_place(&w->grid, bricks);
   free(bricks);
-  if (status == SD_OK) find_terms(w);
-  return status;
+  return status == SD_OK ? find_terms(w) : status;
 }
 
 /* --- product --- */

@@ -11,6 +11,7 @@
 #define SD_EWALD_WAVES_H
 
 #include "sd_ewald_internal.h"
+#include "sd_ewald_runs.h"
 #include "sd_grid.h"
 #include "sd_random.h"
 #include "sd_status.h"
@@ -33,6 +34,8 @@ typedef struct {
   int n;
   const int *sphere;
   sd_spread_place *place;
+  /* those of them that stand side by side (sd_ewald_runs.h) */
+  sd_ewald_runs runs;
   size_t room;
 } sd_ewald_waves;
 
