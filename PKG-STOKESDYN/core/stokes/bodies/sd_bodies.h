@@ -26,10 +26,10 @@
  * K^T l = F holds from the start, so K^T p = 0. r.z = z.M_b' z >= 0 and p.w = p.M p, so that this
  * is conjugate gradients with all that is known of them (sd_cg.h). r must be updated with K q in
  * it: without, digits are lost near 1e-7. Free spheres need one product and no loop
- * (sd_free_spheres.h). e is the power spent as it stands: l.(K V - u), or that of the loads, F.(V + dV - V_u),
- * V_u the velocities with which the flow carries bodies alone, whichever is larger. Bodies that
- * fall together spend many times what they would alone. The tolerance is about an energy norm, and
- * V + dV is ten times better than it, a hundred times where all fall together.
+ * (sd_free_spheres.h). e is the power spent as it stands: l.(K V - u), or that of the loads,
+ * F.(V + dV - V_u), V_u the velocities with which the flow carries bodies alone, whichever is larger.
+ * Bodies that fall together spend many times what they would alone. The tolerance is about an energy
+ * norm, and V + dV is ten times better than it, a hundred times where all fall together.
  *
  * With lubrication L between spheres of different bodies (a tie, sd_tie.h)
  *

@@ -217,8 +217,8 @@ static void windows_of_floats_are_those_of_doubles(void **state)
   free(brick);
 }
 
-/* Ten shells of twelve points, the first too wide for a run, the last with a gap in its numbers: all is as that of doubles
- * one by one. */
+/* Ten shells of twelve points, the first too wide for a run, the last with a gap in its numbers: all is as that of
+ * doubles one by one. */
 static void points_side_by_side_are_spread_like_any(void **state)
 {
   (void) state;
