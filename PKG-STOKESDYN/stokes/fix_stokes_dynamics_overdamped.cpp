@@ -277,10 +277,13 @@ void FixStokesDynamicsOverdamped::check_selection(const Hydrodynamics &hydro) co
 }
 
 /* dt/(2 dt_old), what the change of velocities counts, of forces in scheme midpoint; 0: Euler, or it
- * has no row of the step before */
+ * has no row of the step before. What solves leave of their tolerance counts as much: a step far longer than the
+ * last one, as a script may ask for, would be made of that alone. */
 double FixStokesDynamicsOverdamped::weight(bool has) const
 {
-  return scheme != EULER && has && last.dt > 0.0 ? 0.5 * update->dt / last.dt : 0.0;
+  constexpr double longest = 10.0;
+  const bool follows = scheme != EULER && has && last.dt > 0.0 && update->dt <= longest * last.dt;
+  return follows ? 0.5 * update->dt / last.dt : 0.0;
 }
 
 void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)

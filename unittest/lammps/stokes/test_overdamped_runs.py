@@ -143,6 +143,22 @@ def test_the_step_after_atoms_have_gone_is_eulers(simulation, way):
     assert np.abs(sim.x - x - 0.3 * v).max() < 1e-14
 
 
+@pytest.mark.parametrize("tolerance, first, longer", [(1e-12, 0.02, 8.0), (1e-2, 1e-5, 1e4)])
+def test_a_far_longer_step_is_eulers(simulation, tolerance, first, longer):
+    """It does not multiply what two solves have left of their tolerance; one eight times as long goes on as ever."""
+    spheres = Spheres([(0, 0, 0), (2.1, 0, 0), (0.5, 2.3, 0)])
+    words = f"cut_off_distance inf visc 1 multiblob 12 lubrication yes relative_tolerance {tolerance}"
+    sim = simulation(spheres, words, fix=False, box=[(-40.0, 40.0)] * 3, dt=first)
+    sim.commands(weight(spheres)).commands(FIX).run(0)
+    old = sim.v
+    sim.run(1)
+    x, v, dt = sim.x, sim.v, first * longer
+    sim.commands(f"timestep {dt}").run(1)
+    change = v - old if longer < 10 else np.zeros_like(v)
+    assert np.abs((sim.x - x) / dt - v - 0.5 * longer * change).max() < max(2 * tolerance, 1e-10) * np.abs(v).max()
+    assert np.abs(v - old).max() > 1e-5
+
+
 def test_a_restarted_step_of_adapt_is_told_to_others(simulation, tmp_path):
     """Whoever keeps the length of a step (another integration here, springs of friction elsewhere) has that of the run,
     not that which a script names after read_restart."""
