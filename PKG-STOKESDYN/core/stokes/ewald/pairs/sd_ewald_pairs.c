@@ -208,6 +208,6 @@ void sd_ewald_pairs_take(const sd_ewald_pairs *p, int n, const double *F, const 
                          const double *tail, const double *sums, double *u)
 {
   if (p->n < n) memset(u, 0, sizeof(double) * (size_t) p->width * (size_t) n); /* some have no radius */
-  p->numbers->take(p, F, rows, tail, sums, u);
+  p->numbers->take(p, rows, tail, sums, u);
   sd_ewald_groups_apply(p, F, u);
 }

@@ -116,10 +116,10 @@ static double self_of(const sd_ewald_pairs *p, double b)
   return p->origin[SD_I0] - 2.0 * b * p->origin[SD_I1] + b * b * p->origin[SD_I2];
 }
 
-static inline void take_of_width(int m, const sd_ewald_pairs *p, const double *F, const real *waves,
-                                 const double *tail, const double *sums, double *u)
+static inline void take_of_width(int m, const sd_ewald_pairs *p, const real *waves, const double *tail,
+                                 const double *sums, double *u)
 {
-  const real *row = p->row, *near = p->u;
+  const real *row = p->row, *turn = p->torque_row, *near = p->u;
   const int step = m == 6 ? 8 : 4;
   const double scale = p->scale, length = 1.0 / scale, alike = self_of(p, 0.0), turned = 0.25 * p->origin[SD_I1];
   const double over_V = 1.0 / sd_ewald_volume(&p->ewald.box), none[SD_EWALD_SUMS] = {0.0};
@@ -128,26 +128,25 @@ static inline void take_of_width(int m, const sd_ewald_pairs *p, const double *F
   for (long i = 0; i < p->n; i++) {
     const long k = p->target[i], j = p->sphere[k];
     const double w = row[8 * k + 7], unit = w * scale / (8.0 * SD_PI) * over_unit, wave = w * over_unit;
-    const long later = m * (long) p->sphere[p->target[i + AHEAD < p->n ? i + AHEAD : i]];
-    fetch_ahead(m, F + later);
-    fetch_ahead(m, u + later);
+    fetch_ahead(m, u + m * (long) p->sphere[p->target[i + AHEAD < p->n ? i + AHEAD : i]]);
     const double b = p->equal ? 0.0 : sd_ewald_b(&p->ewald, row[8 * k + 3] * length);
     const double self = p->equal ? alike : self_of(p, b);
     for (int d = 0; d < m; d++) {
       const double sum = d < 3 ? unit * near[step * k + d] : unit * scale * near[step * k + d + 1];
       const double far = d < 3 ? (C[0] - b * C[1]) * S[d] - (C[1] - b * C[2]) * S[3 + d] : 0.25 * C[1] * S[3 + d];
-      double v = sum - w * w * (d < 3 ? self : turned) * F[m * j + d];
+      const double own = d < 3 ? self * row[8 * k + 4 + d] : turned * length * turn[4 * k + d - 3];
+      double v = sum - wave * own;
       if (waves) v += wave * waves[m * i + d];
       u[m * j + d] = v + w * over_V * far;
     }
   }
 }
 
-static void rows_take(const sd_ewald_pairs *p, const double *F, const void *waves, const double *tail,
-                      const double *sums, double *u)
+static void rows_take(const sd_ewald_pairs *p, const void *waves, const double *tail, const double *sums,
+                      double *u)
 {
-  if (p->width == 6) take_of_width(6, p, F, waves, tail, sums, u);
-  else take_of_width(3, p, F, waves, tail, sums, u);
+  if (p->width == 6) take_of_width(6, p, waves, tail, sums, u);
+  else take_of_width(3, p, waves, tail, sums, u);
 }
 
 #ifdef SD_SINGLE
