@@ -77,7 +77,7 @@ static void guess_motion(const sd_bodies_loop *c, const double *v_with_l, double
   const sd_rigid *K = &c->A->spheres;
   hold(c, V);
   for (int i = K->n - 1; i >= 0; i--) {
-    const int b = K->whole ? K->whole[i] : i;
+    const int b = sd_rigid_whole(K, i);
     const double *v = v_with_l + 6 * (long) i, *arm = K->arm ? K->arm + 3 * (long) i : NULL;
     double own[6];
     memcpy(own, v, sizeof(own));

@@ -20,6 +20,12 @@ typedef struct {
   const double *arm;
 } sd_rigid;
 
+/* The whole that part i moves with */
+static inline int sd_rigid_whole(const sd_rigid *K, int i)
+{
+  return K->whole ? K->whole[i] : i;
+}
+
 /* v [width n] = K V, V [6 wholes] */
 void sd_rigid_move(const sd_rigid *K, const double *V, double *v);
 /* f [6 wholes] = K^T of parts [width n] */

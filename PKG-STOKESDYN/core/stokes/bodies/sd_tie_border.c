@@ -28,17 +28,12 @@ typedef struct {
   int *to, *from;
 } border;
 
-static int border_body_of(const sd_bodies *A, int sphere)
-{
-  return A->spheres.whole ? A->spheres.whole[sphere] : sphere;
-}
-
 void sd_tie_border_put_off(const sd_bodies *A)
 {
   sd_tie *t = A->tie;
   const sd_lubrication *L = t->L;
   for (long k = 0; k < L->count; k++)
-    if (L->pair[k][1] >= L->n) sd_block_cholesky_put_off(&t->factor, border_body_of(A, L->pair[k][0]));
+    if (L->pair[k][1] >= L->n) sd_block_cholesky_put_off(&t->factor, sd_rigid_whole(&A->spheres, L->pair[k][0]));
   for (int o = 0; o < t->others; o++) sd_block_cholesky_put_off(&t->factor, sd_bodies_count(A) + o);
 }
 
@@ -79,7 +74,7 @@ static void know_border(border *b, const double *place, double *ranks)
   const sd_lubrication *L = t->L;
   int many = 0;
   for (long k = 0; k < L->count; k++) {
-    const int body = border_body_of(b->A, L->pair[k][0]), copy = L->pair[k][1] - L->n;
+    const int body = sd_rigid_whole(&b->A->spheres, L->pair[k][0]), copy = L->pair[k][1] - L->n;
     if (copy < 0 || t->scale[6 * (long) body] == 0.0) continue;
     b->own[many++] = (at_border){(int) place[SD_PLACE * (long) copy + SD_PLACE_RANK], body};
   }

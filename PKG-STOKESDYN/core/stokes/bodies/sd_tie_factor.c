@@ -36,11 +36,6 @@ static int layered(const sd_bodies *A)
   return world->ranks > 1 && world->refresh && world->tell && world->exchange && world->reduce;
 }
 
-static int body_of(const sd_bodies *A, int sphere)
-{
-  return A->spheres.whole ? A->spheres.whole[sphere] : sphere;
-}
-
 /* --- H_ii --- */
 
 static int has_arm(const double r[3])
@@ -108,7 +103,7 @@ static void find_diagonal(const sd_bodies *A, assembly *a)
   const sd_tie *t = A->tie;
   for (int i = 0; i < A->spheres.n; i++) {
     const double *r = arm_of(A, a, i);
-    double B[36], *to = a->diagonal + 36 * (long) body_of(A, i);
+    double B[36], *to = a->diagonal + 36 * (long) sd_rigid_whole(&A->spheres, i);
     memcpy(B, t->stiff + 36 * (long) i, sizeof(B));
     if (has_arm(r)) move_to_centres(r, r, B);
     for (int e = 0; e < 36; e++) to[e] += B[e];
@@ -136,7 +131,7 @@ static sd_status tell_places(const sd_bodies *A, assembly *a)
   sd_status status = sd_world_agree(&L->world, mine ? SD_OK : SD_ENOMEMORY);
   for (int i = 0; i < L->n && status == SD_OK; i++) {
     double *row = mine + SD_PLACE * (long) i;
-    const long b = body_of(A, i);
+    const long b = sd_rigid_whole(&A->spheres, i);
     row[SD_PLACE_RANK] = L->world.me;
     row[SD_PLACE_ROW] = i;
     row[SD_PLACE_BODY] = (double) b;
@@ -219,7 +214,7 @@ static void largest_scales(const double s[6], double of[2])
 /* Number of the body in the factor; -1: not there */
 static int number_of(const sd_bodies *A, const assembly *a, int sphere)
 {
-  const int n = A->spheres.n, b = sphere < n ? body_of(A, sphere) : a->body[sphere - n];
+  const int n = A->spheres.n, b = sphere < n ? sd_rigid_whole(&A->spheres, sphere) : a->body[sphere - n];
   return b >= 0 && sd_tie_binds(A, b) ? b : -1;
 }
 
@@ -340,7 +335,7 @@ static sd_status factor_fetch(const sd_bodies *A)
   const sd_world *world = &t->L->world;
   const long bodies = sd_bodies_count(A);
   for (int i = 0; i < A->spheres.n; i++)
-    memcpy(t->rows + 6 * (long) i, t->all + 6 * (long) body_of(A, i), 6 * sizeof(double));
+    memcpy(t->rows + 6 * (long) i, t->all + 6 * (long) sd_rigid_whole(&A->spheres, i), 6 * sizeof(double));
   const sd_status status = world->refresh(world->ctx, t->rows, t->copies, 6);
   for (long o = 0; o < t->others; o++)
     memcpy(t->all + 6 * (bodies + o), t->copies + 6 * (long) t->copy[o], 6 * sizeof(double));
@@ -359,7 +354,7 @@ static sd_status factor_give_back(const sd_bodies *A)
     memcpy(t->copies + 6 * (long) t->copy[o], t->all + 6 * (bodies + o), 6 * sizeof(double));
   const sd_status status = L->world.reduce(L->world.ctx, t->copies, t->rows, 6);
   for (int i = 0; i < A->spheres.n; i++)
-    for (int d = 0; d < 6; d++) t->all[6 * (long) body_of(A, i) + d] += t->rows[6 * (long) i + d];
+    for (int d = 0; d < 6; d++) t->all[6 * (long) sd_rigid_whole(&A->spheres, i) + d] += t->rows[6 * (long) i + d];
   return status;
 }
 
