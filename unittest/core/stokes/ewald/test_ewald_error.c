@@ -33,6 +33,18 @@ static scene make(uint64_t *seed, int k)
   return s;
 }
 
+/* u of a sum to the tolerance; returns what was chosen for it */
+static sd_ewald sum_to(double tolerance, const sd_ewald_box *box, const double *x, const double *a, int n, int width,
+                       const double *F, double *u)
+{
+  const sd_ewald how = periodic_choose(box, a, n, width, tolerance);
+  periodic p;
+  periodic_place(&p, x, a, NULL, n, width, &how);
+  periodic_apply(&p, F, u);
+  periodic_free(&p);
+  return how;
+}
+
 static void the_predicted_error_is_the_measured_one(void **state)
 {
   (void) state;
@@ -43,12 +55,9 @@ static void the_predicted_error_is_the_measured_one(void **state)
     const sd_ewald_sizes sizes = periodic_sizes(s.a, N);
     double u[2][3 * N], off = 0.0, bare = 0.0, predicted = 0.0;
     for (int tight = 0; tight < 2; tight++) {
-      const sd_ewald how = periodic_choose(&s.box, s.a, N, 3, tight ? 0.01 * s.tolerance : s.tolerance);
+      const sd_ewald how =
+          sum_to(tight ? 0.01 * s.tolerance : s.tolerance, &s.box, s.x, s.a, N, 3, s.F, u[tight]);
       if (!tight) predicted = predicted_error(&how, NULL, &sizes);
-      periodic p;
-      periodic_place(&p, s.x, s.a, NULL, N, 3, &how);
-      periodic_apply(&p, s.F, u[tight]);
-      periodic_free(&p);
     }
     for (int i = 0; i < 3 * N; i++) {
       off += pow(u[0][i] - u[1][i], 2);
@@ -189,13 +198,8 @@ static double error_of_two_sizes(const two_sizes *s)
   for (int i = 0; i < 3 * s->n; i++) x[i] = uniform(&seed, 0, box.edge[0]);
   for (int i = 0; i < s->width * s->n; i++)
     F[i] = uniform(&seed, -1, 1) * pow(a[i / s->width], i % s->width < 3 ? 1.0 : 2.0);
-  for (int tight = 0; tight < 2; tight++) {
-    const sd_ewald how = periodic_choose(&box, a, s->n, s->width, (tight ? 0.03 : 1.0) * tolerance);
-    periodic p;
-    periodic_place(&p, x, a, NULL, s->n, s->width, &how);
-    periodic_apply(&p, F, u[tight]);
-    periodic_free(&p);
-  }
+  for (int tight = 0; tight < 2; tight++)
+    sum_to((tight ? 0.03 : 1.0) * tolerance, &box, x, a, s->n, s->width, F, u[tight]);
   for (int i = 0; i < s->width * s->n; i++) {
     const int spin = i % s->width >= 3;
     const double A = a[i / s->width];
@@ -246,13 +250,7 @@ static void equal_forces_are_no_worse(void **state)
   for (int d = 0; d < 3; d++) box.edge[d] = cbrt(4.0 / 3.0 * SD_PI * N / 0.45);
   for (int i = 0; i < 3 * N; i++) x[i] = uniform(&seed, 0, box.edge[0]), F[i] = 6.0 * SD_PI * (i % 3 == 2);
   for (int i = 0; i < N; i++) a[i] = 1.0;
-  for (int tight = 0; tight < 2; tight++) {
-    const sd_ewald how = periodic_choose(&box, a, N, 3, tight ? 1e-6 : 1e-3);
-    periodic p;
-    periodic_place(&p, x, a, NULL, N, 3, &how);
-    periodic_apply(&p, F, u[tight]);
-    periodic_free(&p);
-  }
+  for (int tight = 0; tight < 2; tight++) sum_to(tight ? 1e-6 : 1e-3, &box, x, a, N, 3, F, u[tight]);
   for (int i = 0; i < 3 * N; i++) off += pow(u[0][i] - u[1][i], 2) / N;
   assert_true(sqrt(off) < 1e-3);
 }
@@ -274,13 +272,7 @@ static void equal_forces_on_a_lattice_are_seven_times_worse(void **state)
         x[3 * n + d] = (at[d] + 0.2 + (corner > 0 && d != corner - 1 ? 0.5 : 0.0)) / M * box.edge[d];
     }
   for (int i = 0; i < 3 * n; i++) F[i] = 6.0 * SD_PI * (i % 3 == 2), a[i / 3] = 1.0;
-  for (int tight = 0; tight < 2; tight++) {
-    const sd_ewald how = periodic_choose(&box, a, n, 3, tight ? 1e-7 : 1e-4);
-    periodic p;
-    periodic_place(&p, x, a, NULL, n, 3, &how);
-    periodic_apply(&p, F, u[tight]);
-    periodic_free(&p);
-  }
+  for (int tight = 0; tight < 2; tight++) sum_to(tight ? 1e-7 : 1e-4, &box, x, a, n, 3, F, u[tight]);
   for (int i = 0; i < 3 * n; i++) off += pow(u[0][i] - u[1][i], 2) / n;
   if (getenv("STOKESDYN_SHOW")) printf("lattice: %.2f tolerances at %.2f of F/(6 pi a)\n", 1e4 * sqrt(off), u[1][2]);
   assert_true(sqrt(off) < 7e-4);

@@ -177,13 +177,39 @@ static void near_parts_of_floats_are_those_of_doubles(void **state)
       }
 }
 
+/* What floats of every set spread and interpolate is as that of plain doubles, which go point by point. */
+static void floats_are_as_doubles(sd_spreading *s, const cloud *c, int width)
+{
+  const size_t numbers = (size_t) ROW * SIDE * SIDE + 64;
+  double *expected = calloc(numbers, sizeof(double)), first[6 * N], largest = 0.0, fastest = 0.0;
+  float *brick = malloc(sizeof(float) * numbers), F[6 * N];
+  memcpy(first, c->F, sizeof(first));
+  s->brick = expected;
+  s->F = first;
+  SD_KERNELS_OF(sd_ewald, plain, SD_ISA_PLAIN)->spread(s);
+  SD_KERNELS_OF(sd_ewald, plain, SD_ISA_PLAIN)->interpolate(s);
+  for (size_t g = 0; g < numbers; g++) largest = fmax(largest, fabs(expected[g]));
+  for (int i = 0; i < width * N; i++) fastest = fmax(fastest, fabs(first[i]));
+  s->brick = brick;
+  s->F = F;
+  for (int k = -1; k < 3; k++) {
+    const sd_isa isa = k < 0 ? SD_ISA_PLAIN : sets[k];
+    if (!sd_isa_supported(isa)) continue;
+    for (int i = 0; i < width * N; i++) F[i] = (float) c->F[i];
+    memset(brick, 0, sizeof(float) * numbers);
+    SD_KERNELS_OF(sd_ewald_single, plain, isa)->spread(s);
+    for (size_t g = 0; g < numbers; g++) CHECK_NEAR(brick[g], expected[g], 1e-6 * largest);
+    SD_KERNELS_OF(sd_ewald_single, plain, isa)->interpolate(s);
+    for (int i = 0; i < width * N; i++) CHECK_NEAR(F[i], first[i], 1e-6 * fastest);
+  }
+  free(expected);
+  free(brick);
+}
+
 static void windows_of_floats_are_those_of_doubles(void **state)
 {
   (void) state;
   const cloud c = make(3, 0);
-  const size_t numbers = (size_t) ROW * SIDE * SIDE + 64;
-  double *expected = malloc(sizeof(double) * numbers), first[6 * N];
-  float *brick = malloc(sizeof(float) * numbers), F[6 * N];
   for (int points = 3; points <= 9; points++)
     for (int terms = 1; terms <= 4; terms++) {
       const int width = terms >= 3 ? 6 : 3;
@@ -191,30 +217,8 @@ static void windows_of_floats_are_those_of_doubles(void **state)
       sd_spread_place place[N];
       sd_window_fit(points, 2.3 * points, 1e-5, &w);
       sd_spreading s = spheres_on_a_brick(&c, place, &w, terms, width);
-      double largest = 0.0, fastest = 0.0;
-      memset(expected, 0, sizeof(double) * numbers);
-      memcpy(first, c.F, sizeof(first));
-      s.brick = expected;
-      s.F = first;
-      SD_KERNELS_OF(sd_ewald, plain, SD_ISA_PLAIN)->spread(&s);
-      SD_KERNELS_OF(sd_ewald, plain, SD_ISA_PLAIN)->interpolate(&s);
-      for (size_t g = 0; g < numbers; g++) largest = fmax(largest, fabs(expected[g]));
-      for (int i = 0; i < width * N; i++) fastest = fmax(fastest, fabs(first[i]));
-      for (int k = -1; k < 3; k++) {
-        const sd_isa isa = k < 0 ? SD_ISA_PLAIN : sets[k];
-        if (!sd_isa_supported(isa)) continue;
-        for (int i = 0; i < width * N; i++) F[i] = (float) c.F[i];
-        memset(brick, 0, sizeof(float) * numbers);
-        s.brick = brick;
-        s.F = F;
-        SD_KERNELS_OF(sd_ewald_single, plain, isa)->spread(&s);
-        for (size_t g = 0; g < numbers; g++) CHECK_NEAR(brick[g], expected[g], 1e-6 * largest);
-        SD_KERNELS_OF(sd_ewald_single, plain, isa)->interpolate(&s);
-        for (int i = 0; i < width * N; i++) CHECK_NEAR(F[i], first[i], 1e-6 * fastest);
-      }
+      floats_are_as_doubles(&s, &c, width);
     }
-  free(expected);
-  free(brick);
 }
 
 /* Ten shells of twelve points, the first too wide for a run, the last with a gap in its numbers: all is as that of
@@ -223,9 +227,6 @@ static void points_side_by_side_are_spread_like_any(void **state)
 {
   (void) state;
   const cloud c = make(11, 1);
-  const size_t numbers = (size_t) ROW * SIDE * SIDE + 64;
-  double *expected = malloc(sizeof(double) * numbers), first[3 * N];
-  float *brick = malloc(sizeof(float) * numbers), F[3 * N];
   for (int points = 4; points <= 8; points++) {
     sd_window w;
     sd_spread_place place[N];
@@ -246,33 +247,11 @@ static void points_side_by_side_are_spread_like_any(void **state)
       assert_true(runs.run[k].first >= end && runs.run[k].many <= SD_GROUP_POINTS && runs.run[k].first > 0);
       if (k == runs.n - 1) assert_int_equal(runs.run[k].many, 6);
     }
-    memset(expected, 0, sizeof(double) * numbers);
-    memcpy(first, c.F, sizeof(first));
-    s.brick = expected;
-    s.F = first;
-    SD_KERNELS_OF(sd_ewald, plain, SD_ISA_PLAIN)->spread(&s);
-    SD_KERNELS_OF(sd_ewald, plain, SD_ISA_PLAIN)->interpolate(&s);
-    double largest = 0.0, fastest = 0.0;
-    for (size_t g = 0; g < numbers; g++) largest = fmax(largest, fabs(expected[g]));
-    for (int i = 0; i < 3 * N; i++) fastest = fmax(fastest, fabs(first[i]));
     s.runs = runs.n;
     s.run = runs.run;
-    s.brick = brick;
-    s.F = F;
-    for (int k = -1; k < 3; k++) {
-      const sd_isa isa = k < 0 ? SD_ISA_PLAIN : sets[k];
-      if (!sd_isa_supported(isa)) continue;
-      for (int i = 0; i < 3 * N; i++) F[i] = (float) c.F[i];
-      memset(brick, 0, sizeof(float) * numbers);
-      SD_KERNELS_OF(sd_ewald_single, plain, isa)->spread(&s);
-      for (size_t g = 0; g < numbers; g++) CHECK_NEAR(brick[g], expected[g], 1e-6 * largest);
-      SD_KERNELS_OF(sd_ewald_single, plain, isa)->interpolate(&s);
-      for (int i = 0; i < 3 * N; i++) CHECK_NEAR(F[i], first[i], 1e-6 * fastest);
-    }
+    floats_are_as_doubles(&s, &c, 3);
     sd_ewald_runs_free(&runs);
   }
-  free(expected);
-  free(brick);
 }
 
 static void rows_of_waves_agree(void **state)
