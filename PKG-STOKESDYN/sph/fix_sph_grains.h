@@ -76,7 +76,8 @@ class FixSphGrains : public SphFix {
   // radius, volume, mass: HUGE_VAL of those that forces do not move
   std::vector<double> a, V, M;
   double total[3] = {0.0, 0.0, 0.0}, largest = 0.0;
-  sd_sph_around around() const { return {(int) grains.size(), first.data(), particle.data()}; }
+  sd_sph_around around() { return {(int) grains.size(), first.data(), particle.data(), weight.data()}; }
+  sd_sph_grains are_grains() const { return {a.data(), V.data(), wet.data()}; }
   void check_scene();
   void look_at_strangers();
   bool is_too_large(double diameter) const;
@@ -92,7 +93,7 @@ class FixSphGrains : public SphFix {
   void check_bodies(const std::vector<double> &k);
   std::vector<double> at_points(const std::vector<double> &of_atoms, int columns) const;
   std::vector<double> at_atoms(const std::vector<double> &of_points, int columns) const;
-  std::vector<double> mean_of(const std::vector<double> &of_atoms, int columns) const;
+  std::vector<double> mean_of(const std::vector<double> &of_atoms, int columns);
   void stresses(std::vector<double> &F);
   void drags(const std::vector<double> &F, std::vector<double> &D);
   void give_back(const std::vector<double> &D);

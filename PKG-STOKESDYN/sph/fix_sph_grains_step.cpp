@@ -88,8 +88,9 @@ void FixSphGrains::find_fractions()
 void FixSphGrains::sum_fractions()
 {
   const sd_sph_around list = around();
+  const sd_sph_grains of_grains = are_grains();
   std::vector<double> found(points.size() + 1, 0.0);
-  sd_sph_grain_fractions(&list, V.data(), volume.data(), weight.data(), wet.data(), found.data());
+  sd_sph_grain_fractions(&list, &of_grains, volume.data(), found.data());
   std::vector<double> all = at_atoms(found, 1);
   reverse(all.data(), 1);
   for (int i = 0; i < atom->nlocal; i++)
@@ -114,13 +115,14 @@ void FixSphGrains::weigh()
     const int i = points[p];
     volume[p] = atom->rmass[i] / (atom->rho[i] * (1.0 - phi[i]));
   }
-  const sd_sph_around list = around();
   weight.resize(particle.size() + 1);
   wet.resize(n + 1);
   own.resize(n + 1);
-  sd_sph_grain_weights(law.kernel, law.h, &list, grain_places.data(), places.data(), volume.data(),
-                       walls.data(), weight.data(), wet.data());
-  sd_sph_grain_shares(&list, V.data(), volume.data(), weight.data(), wet.data(), own.data());
+  const sd_sph_around list = around();
+  const sd_sph_points of_points = {places.data(), volume.data(), walls.data()};
+  const sd_sph_grains of_grains = are_grains();
+  sd_sph_grain_weights(law.kernel, law.h, &list, grain_places.data(), &of_points, wet.data());
+  sd_sph_grain_shares(&list, &of_grains, volume.data(), own.data());
 }
 
 /* The volume of the particles stays, and so all that has been found with it. */
@@ -133,11 +135,11 @@ void FixSphGrains::displace()
 
 const double *FixSphGrains::mixture(const double *v)
 {
-  std::vector<double> of_grains(3 * grains.size() + 1), there(3 * points.size() + 1, 0.0);
-  for (size_t j = 0; j < grains.size(); j++) std::copy_n(atom->v[grains[j]], 3, &of_grains[3 * j]);
+  std::vector<double> velocities(3 * grains.size() + 1), there(3 * points.size() + 1, 0.0);
+  for (size_t j = 0; j < grains.size(); j++) std::copy_n(atom->v[grains[j]], 3, &velocities[3 * j]);
   const sd_sph_around list = around();
-  sd_sph_grain_flux(&list, V.data(), volume.data(), weight.data(), wet.data(), of_grains.data(),
-                    there.data());
+  const sd_sph_grains of_grains = are_grains();
+  sd_sph_grain_flux(&list, &of_grains, volume.data(), velocities.data(), there.data());
   moved = at_atoms(there, 3);
   reverse(moved.data(), 3);
   forward(moved.data(), 3);
@@ -241,8 +243,9 @@ void FixSphGrains::stresses(std::vector<double> &F)
   std::vector<double> per_volume = at_points(forces, 3), mean(3 * grains.size() + 1);
   for (size_t k = 0; k < 3 * points.size(); k++) per_volume[k] /= volume[k / 3];
   const sd_sph_around list = around();
-  sd_sph_grain_vector_means(&list, weight.data(), per_volume.data(), mean.data());
-  sd_sph_grain_stresses((int) grains.size(), mean.data(), wet.data(), V.data(), F.data());
+  const sd_sph_grains of_grains = are_grains();
+  sd_sph_grain_vector_means(&list, per_volume.data(), mean.data());
+  sd_sph_grain_stresses((int) grains.size(), &of_grains, mean.data(), F.data());
 }
 
 /* The law at the slip of now, and its drag D at the velocities of the end of the step, which all
@@ -269,21 +272,21 @@ void FixSphGrains::drags(const std::vector<double> &F, std::vector<double> &D)
   const std::vector<double> u = mean_of(now, 3), u_next = mean_of(next, 3),
                             rho = mean_of(std::vector<double>(atom->rho, atom->rho + all), 1);
   sd_sph_grain_phi(n, mean_phi.data(), own.data(), at_grains.data());
-  sd_sph_grain_drag(&law, n, a.data(), u.data(), v.data(), rho.data(), at_grains.data(), wet.data(),
-                    k.data());
+  const sd_sph_grains of_grains = are_grains();
+  const sd_sph_slip slip = {u.data(), v.data()}, slip_next = {u_next.data(), v_next.data()};
+  sd_sph_grain_drag(&law, n, &of_grains, &slip, rho.data(), at_grains.data(), k.data());
   check_bodies(k);
   for (int j = 0; j < n; j++) shown.writable(grains[j])[0] = at_grains[j];
 
   const sd_sph_around list = around();
-  sd_sph_grain_load(&list, weight.data(), k.data(), total_drag.data());
+  sd_sph_grain_load(&list, k.data(), total_drag.data());
   std::vector<double> slowed = at_atoms(total_drag, 1);
   reverse(slowed.data(), 1);
   for (int i = 0; i < nlocal; i++)
     if (slowed[i] != 0.0) slowed[i] /= atom->rmass[i];
   forward(slowed.data(), 1);
   const std::vector<double> slowed_points = at_points(slowed, 1);
-  sd_sph_grain_drags(&list, dt, weight.data(), u_next.data(), v_next.data(), M.data(), k.data(),
-                     slowed_points.data(), D.data());
+  sd_sph_grain_drags(&list, dt, &slip_next, M.data(), k.data(), slowed_points.data(), D.data());
   give_back(D);
 }
 
@@ -292,7 +295,7 @@ void FixSphGrains::give_back(const std::vector<double> &D)
 {
   const sd_sph_around list = around();
   std::vector<double> mine(3 * points.size() + 1, 0.0);
-  sd_sph_grain_reactions(&list, weight.data(), D.data(), mine.data());
+  sd_sph_grain_reactions(&list, D.data(), mine.data());
   std::vector<double> all = at_atoms(mine, 3);
   reverse(all.data(), 3);
   for (int i = 0; i < atom->nlocal; i++) {
@@ -322,13 +325,13 @@ std::vector<double> FixSphGrains::at_atoms(const std::vector<double> &of_points,
   return out;
 }
 
-std::vector<double> FixSphGrains::mean_of(const std::vector<double> &of_atoms, int columns) const
+std::vector<double> FixSphGrains::mean_of(const std::vector<double> &of_atoms, int columns)
 {
   const sd_sph_around list = around();
   const std::vector<double> there = at_points(of_atoms, columns);
   std::vector<double> mean(columns * grains.size() + 1);
   const auto means = columns == 3 ? sd_sph_grain_vector_means : sd_sph_grain_means;
-  means(&list, weight.data(), there.data(), mean.data());
+  means(&list, there.data(), mean.data());
   return mean;
 }
 

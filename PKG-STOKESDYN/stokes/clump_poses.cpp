@@ -194,16 +194,15 @@ void ClumpPoses::velocities(int width, const ToAtom &take)
   for (int d = 0; d < 6 && ambient.jumps(); d++) back[d] = -ambient.jumps()[d];
   const auto all = [&](const auto &give) {
     for (Clump &clump : all_clumps) {
-      const ClumpShape &is = shape(clump);
       const size_t n = own_clump(clump).n, at = 3 * (size_t) own_clump(clump).begin;
+      const sd_clump_placed is = placed(clump);
       const sd_clump_motion motion = look_at(clump);
       double arm[3], on_clump[6] = {0.0};
       sd_minus(&spheres.x[at], clump.pose + 9, arm);
       sd_clump_add_load(arm, &loads[6 * (size_t) clump.number], on_clump);
       rows.resize(ROW * n);
-      sd_clump_move_alone(&is.shape, &is.clump, &motion, clump.pose, clump.eta, on_clump,
-                          clump.known == SD_BODY_HELD, clump.V, ROW, rows.data(), &rows[6],
-                          width == 6 ? &rows[9] : nullptr);
+      const sd_clump_rows out = {ROW, rows.data(), &rows[6], width == 6 ? &rows[9] : nullptr};
+      sd_clump_move_alone(&is, &motion, clump.known == SD_BODY_HELD ? nullptr : on_clump, clump.V, &out);
       for (size_t k = 0; k < n; k++) {
         const size_t m = member_of(clump, (int) k);
         if (ambient.jumps()) sd_add_edges(back, &scene.whole.edges[3 * m], &rows[ROW * k]);
@@ -221,12 +220,12 @@ void ClumpPoses::drag(const Drag &take, std::vector<char> &left_over)
   std::vector<double> rows;
   const auto all = [&](const auto &give) {
     for (const Clump &clump : clumps()) {
-      const ClumpShape &is = shape(clump);
+      const sd_clump_placed is = placed(clump);
       const sd_clump_motion motion = look_at(clump);
       const size_t n = own_clump(clump).n;
       rows.resize(ROW * n);
-      sd_clump_drag(&is.shape, &is.clump, &motion, clump.pose, clump.eta, ROW, &rows[FORCE],
-                    turns ? &rows[TORQUE] : nullptr);
+      const sd_clump_rows out = {ROW, nullptr, &rows[FORCE], turns ? &rows[TORQUE] : nullptr};
+      sd_clump_drag(&is, &motion, &out);
       for (size_t k = 0; k < n; k++) give(member_of(clump, (int) k), &rows[ROW * k]);
     }
     const double loose_row[ROW] = {1.0};

@@ -85,6 +85,10 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
   {
     return rigid.members()[own_clump(clump).begin + k];
   }
+  sd_clump_placed placed(const Clump &clump) const
+  {
+    return {&shape(clump).shape, &shape(clump).clump, clump.pose, clump.eta};
+  }
   /* What the spheres of a clump and the fluid at them do */
   sd_clump_motion look_at(const Clump &clump) const;
   /* [6 clumps] velocities that a solve has found */

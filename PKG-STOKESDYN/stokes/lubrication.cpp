@@ -113,8 +113,8 @@ void Lubrication::add_wall(const Scene &where, const sd_wall &wall)
         sd_multiply3(where.shells->turns() + 9 * k, model->r + 3 * p, &r[3 * p]);
         for (int d = 0; d < 3; d++) r[3 * p + d] *= s.a[k];
       }
-      check(sd_multiblob_wall_film(model, &wall, x, s.a[k], r.data(), shells.one_body, settings.gap,
-                                   eta, flow, B, E));
+      const sd_multiblob_sphere sphere = {model, x, s.a[k], r.data(), shells.one_body};
+      check(sd_multiblob_wall_film(&sphere, &wall, settings.gap, eta, flow, B, E));
     } else {
       const sd_wall_film film = sd_wall_film_at(s.a[k], sd_wall_height(&wall, x), settings.gap);
       sd_wall_film_matrix(&film, normal, eta, B);

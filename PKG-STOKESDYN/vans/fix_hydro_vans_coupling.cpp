@@ -62,8 +62,8 @@ int FixHydroVans::forces(const sd_vans_grains &all, bool accelerated)
   if (set.law.added_mass > 0.0 && accelerated) grains.acceleration = acceleration.data();
   F.resize(3 * (size_t) grains.n + 3);
   drag_x.resize(grains.n + 1);
-  return sd_vans_forces(&set.mesh, &set.law, stream.U.data(), stream.hindrance.data(), &grains,
-                        F.data(), drag_x.data());
+  const sd_vans_ambient ambient = stream.ambient();
+  return sd_vans_forces(&ambient, &grains, F.data(), drag_x.data());
 }
 
 /* Tells one set of members of clumps from another, in any order and on any ranks: IDs, molecules,
@@ -146,8 +146,8 @@ void FixHydroVans::average()
   const sd_vans_averaging how = {set.point, (int) nclass, stream.class_radii.data(),
                                  &sums[forces], stream.bins()};
   const sd_vans_grains grains = this->grains();
-  const int odd = sd_vans_average(&set.mesh, &set.law, &how, stream.U.data(),
-                                  stream.hindrance.data(), &grains, sums.data(), work.data());
+  const sd_vans_ambient ambient = stream.ambient();
+  const int odd = sd_vans_average(&ambient, &how, &grains, sums.data(), work.data());
   if (odd >= 0)
     set.voice.fail_one("atom " + std::to_string(atom->tag[odd]) + " has radius " +
                        text(atom->radius[odd]) +

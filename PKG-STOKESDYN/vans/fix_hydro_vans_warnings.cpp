@@ -140,12 +140,12 @@ void FixHydroVans::tell_stiff()
   for (int i = 0; i < atom->nlocal; i++)
     mass[i] = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
   const sd_vans_grains all = grains();
+  const sd_vans_ambient ambient = stream.ambient();
   int stiffest = -1;
   struct {
     double rate;
     int rank;
-  } mine = {sd_vans_stiffest(&set.mesh, &set.law, stream.U.data(), stream.hindrance.data(), &all,
-                             mass.data(), &stiffest), comm->me}, largest;
+  } mine = {sd_vans_stiffest(&ambient, &all, mass.data(), &stiffest), comm->me}, largest;
   MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
   if (!(largest.rate * update->dt > 1.0)) return;
   double tag = stiffest < 0 ? 0.0 : (double) atom->tag[stiffest];

@@ -251,17 +251,16 @@ void VansStream::tell_limits(double T, double dt, bool held, const double cut[2]
 /* b, and what it has too much at the start as a source. */
 void VansStream::exchange(double T, double dt, bool held, std::vector<double> &rest)
 {
-  const double *of_classes = set.classes ? classes() : nullptr;
   /* exact for any sizes, unless the user has a radius of his own or the grains are given */
   const bool by_radius = set.yade() || set.radius > 0.0 || !density_known;
-  const double *density = by_radius ? nullptr : drag_density.data();
+  const sd_vans_means grains = {grain.data(), set.classes ? classes() : nullptr,
+                                by_radius ? nullptr : drag_density.data()};
   double cut[2] = {0.0, 0.0};
   if (set.law.felt_by_volume) {
     rest.resize(ncell());
-    sd_vans_exchange_by_law(&mesh, &fluid, U.data(), hindrance.data(), grain.data(), of_classes,
-                            density, b.data(), rest.data());
+    sd_vans_exchange_by_law(&mesh, &fluid, U.data(), hindrance.data(), &grains, b.data(), rest.data());
   } else
-    sd_vans_exchange(&mesh, &fluid, dt, U.data(), grain.data(), of_classes, density, b.data(), cut);
+    sd_vans_exchange(&mesh, &fluid, dt, U.data(), &grains, b.data(), cut);
   tell_limits(T, dt, held, cut);
   /* grains above the surface have no water */
   std::fill(b.begin() + wet.ncell, b.end(), 0.0);

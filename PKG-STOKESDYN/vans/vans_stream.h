@@ -69,6 +69,7 @@ class VansStream {
   } ledger;
 
   int ncell() const { return mesh.ncell; }
+  sd_vans_ambient ambient() const { return {&mesh, &set.law, U.data(), hindrance.data()}; }
   double *phi() { return grain.data(); }
   double *row(int k) { return grain.data() + (size_t) k * mesh.ncell; }
   void set_classes(const std::vector<double> &radii, const std::vector<double> &limits = {},

@@ -195,7 +195,7 @@ SCENES = {
 }
 
 
-def main():
+def read_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene", choices=SCENES)
     parser.add_argument("--steps", type=int, help="default: 1000 or 1200")
@@ -203,15 +203,79 @@ def main():
                         help="fix external in one run, or a loop of 'run 1 pre no': the same answer")
     parser.add_argument("--out", default=".", help="directory for SCENE.npz")
     parser.add_argument("--log", default="log.lammps")
-    args = parser.parse_args()
-    scene = SCENES[args.scene]
-    steps = args.steps or scene["steps"]
+    return parser.parse_args()
 
+
+def begin(args):
     words = ["-screen", "none", "-log", args.log]
-    for name, value in dict(scene["variables"], edge=EDGE, depth=DEPTH, report=REPORT).items():
+    for name, value in dict(SCENES[args.scene]["variables"], edge=EDGE, depth=DEPTH, report=REPORT).items():
         words += ["-var", name, str(value)]
+    return lammps(cmdargs=words)
+
+
+class Balance:
+    """The momentum of clumps and fluid, which only the weight changes: a row of a table from time to time"""
+
+    def __init__(self, coupling, say, two_way):
+        self.coupling, self.say, self.two_way = coupling, say, two_way
+        lmp, mass = coupling.lmp, coupling.gather("rmass", 1).sum()
+        self.weight = np.array((0.0, -lmp.extract_variable("gravity", None, 0) * mass, 0.0))
+        self.start = coupling.clump_momentum() + coupling.fluid.momentum()
+        self.curve, self.largest, self.drift = [], 0.0, 0.0
+        say("    time   momentum of the clumps     momentum of the fluid      sum - start - weight*time   force "
+            "+ rate of fluid")
+        say("                  x            y            x            y            x            y         "
+            "largest / sum of |F|")
+
+    def report(self):
+        coupling = self.coupling
+        time = coupling.step * coupling.lmp.extract_global("dt")
+        clumps = coupling.clump_momentum()
+        body = coupling.fluid.momentum() if self.two_way else coupling.reaction
+        off = clumps + body - self.start - self.weight * time
+        self.largest = max(self.largest, np.linalg.norm(clumps), np.linalg.norm(body))
+        self.drift = max(self.drift, np.linalg.norm(off))
+        self.curve.append(np.concatenate(([time], clumps, body, off)))
+        self.say(f"{time:8.1f} {clumps[0]:12.4f} {clumps[1]:12.4f} {body[0]:12.4f} {body[1]:12.4f} {off[0]:12.1e} "
+                 f"{off[1]:12.1e}           {coupling.imbalance:9.1e}")
+
+    def holds(self):
+        imbalance = self.coupling.imbalance
+        self.say(f"largest |force on the clumps + momentum rate of the fluid| / sum of |F|: {imbalance:.2e}")
+        self.say(f"largest error of the momentum over the run / largest momentum:           "
+                 f"{self.drift / self.largest:.2e}")
+        balanced = imbalance < 1e-12 and self.drift < 1e-12 * self.largest
+        if not balanced:
+            self.say("the momentum balance is missed: both numbers must be below 1e-12")
+        return balanced
+
+
+def march(coupling, driver, steps, balance):
+    lmp = coupling.lmp
+    if driver == "callback":
+        lmp.command("fix cfd all external pf/callback 1 1")         # after fix drag: its forces are those of this step
+        lmp.set_fix_external_callback("cfd", coupling.callback)
+    lmp.command("run 0 post no")
+    if driver == "loop":
+        coupling.exchange(0)
+    balance.report()
+    for done in range(0, steps, REPORT):
+        count = min(REPORT, steps - done)
+        if driver == "callback":
+            lmp.command(f"run {count} pre no post no")
+        else:
+            for step in range(done + 1, done + count + 1):
+                lmp.command("run 1 pre no post no")
+                coupling.exchange(step)
+        if coupling.error:
+            raise coupling.error
+        balance.report()
+
+
+def main():
+    args = read_arguments()
     out = os.path.abspath(args.out)
-    lmp = lammps(cmdargs=words)
+    lmp = begin(args)
     root = lmp.extract_setting("world_rank") == 0
 
     def say(text):
@@ -226,55 +290,14 @@ def main():
     coupling = Coupling(lmp, fluid)
     # before the first force: the viscosity of a new property is 0, which the pair style refuses
     coupling.write()
-    mass = coupling.gather("rmass", 1).sum()
-    weight = np.array((0.0, -lmp.extract_variable("gravity", None, 0) * mass, 0.0))
-    start = coupling.clump_momentum() + fluid.momentum()
-    curve, largest, drift = [], 0.0, 0.0
-
-    say("    time   momentum of the clumps     momentum of the fluid      sum - start - weight*time   force "
-        "+ rate of fluid")
-    say("                  x            y            x            y            x            y         "
-        "largest / sum of |F|")
-
-    def report():
-        nonlocal largest, drift
-        time = coupling.step * lmp.extract_global("dt")
-        clumps = coupling.clump_momentum()
-        body = fluid.momentum() if args.scene == "two-way" else coupling.reaction
-        off = clumps + body - start - weight * time
-        largest = max(largest, np.linalg.norm(clumps), np.linalg.norm(body))
-        drift = max(drift, np.linalg.norm(off))
-        curve.append(np.concatenate(([time], clumps, body, off)))
-        say(f"{time:8.1f} {clumps[0]:12.4f} {clumps[1]:12.4f} {body[0]:12.4f} {body[1]:12.4f} {off[0]:12.1e} "
-            f"{off[1]:12.1e}           {coupling.imbalance:9.1e}")
-
-    if args.driver == "callback":
-        lmp.command("fix cfd all external pf/callback 1 1")         # after fix drag: its forces are those of this step
-        lmp.set_fix_external_callback("cfd", coupling.callback)
-    lmp.command("run 0 post no")
-    if args.driver == "loop":
-        coupling.exchange(0)
-    report()
-    for done in range(0, steps, REPORT):
-        count = min(REPORT, steps - done)
-        if args.driver == "callback":
-            lmp.command(f"run {count} pre no post no")
-        else:
-            for step in range(done + 1, done + count + 1):
-                lmp.command("run 1 pre no post no")
-                coupling.exchange(step)
-        if coupling.error:
-            raise coupling.error
-        report()
-    say(f"largest |force on the clumps + momentum rate of the fluid| / sum of |F|: {coupling.imbalance:.2e}")
-    say(f"largest error of the momentum over the run / largest momentum:           {drift / largest:.2e}")
-    balanced = coupling.imbalance < 1e-12 and drift < 1e-12 * largest
-    if not balanced:
-        say("the momentum balance is missed: both numbers must be below 1e-12")
+    balance = Balance(coupling, say, args.scene == "two-way")
+    march(coupling, args.driver, args.steps or SCENES[args.scene]["steps"], balance)
+    balanced = balance.holds()
     if root:
         os.makedirs(out, exist_ok=True)
-        np.savez(os.path.join(out, args.scene + ".npz"), curve=np.array(curve), tracks=np.array(coupling.tracks),
-                 u=coupling.snapshot, imbalance=coupling.imbalance, drift=drift / largest)
+        np.savez(os.path.join(out, args.scene + ".npz"), curve=np.array(balance.curve),
+                 tracks=np.array(coupling.tracks), u=coupling.snapshot, imbalance=coupling.imbalance,
+                 drift=balance.drift / balance.largest)
     lmp.close()
     lmp.finalize()
     return 0 if balanced else 1

@@ -261,18 +261,19 @@ static double positive(const char *keyword, const char *value)
   return v;
 }
 
-int main(int argc, char **argv)
+typedef struct {
+  sd_clump_options of_clump;
+  double eta;
+  int digits;
+} wishes;
+
+static wishes read_wishes(int argc, char **argv)
 {
   static const char *usage =
       "usage: clump_resistance FILE [shell n] [rotation yes|no] [visc eta] [memory bytes] [digits n]";
-  double eta = 1.0;
-  int digits = 8;
-  sd_clump_options o = SD_CLUMP_OPTIONS;
-  o.shell = 42;
-  o.rotation = 1;
-  double last_line = seconds();
-  o.progress = progress;
-  o.progress_ctx = &last_line;
+  wishes w = {SD_CLUMP_OPTIONS, 1.0, 8};
+  w.of_clump.shell = 42;
+  w.of_clump.rotation = 1;
   if (argc < 2 || argc % 2) stop(usage, NULL);
   for (int k = 2; k + 1 < argc; k += 2) {
     const char *key = argv[k], *value = argv[k + 1];
@@ -280,71 +281,96 @@ int main(int argc, char **argv)
       const double n = positive(key, value);
       if (n != floor(n) || n > 1e5 || (n > 1 && n < 12))
         stop("shell must be 1 or a whole number from 12 on, not", value);
-      o.shell = (int) n;
+      w.of_clump.shell = (int) n;
     } else if (!strcmp(key, "rotation")) {
       if (strcmp(value, "yes") && strcmp(value, "no"))
         stop("rotation must be yes or no, not", value);
-      o.rotation = !strcmp(value, "yes");
+      w.of_clump.rotation = !strcmp(value, "yes");
     } else if (!strcmp(key, "visc"))
-      eta = positive(key, value);
+      w.eta = positive(key, value);
     else if (!strcmp(key, "memory"))
-      o.memory = positive(key, value);
+      w.of_clump.memory = positive(key, value);
     else if (!strcmp(key, "digits"))
-      digits = (int) fmin(positive(key, value), 17.0);
+      w.digits = (int) fmin(positive(key, value), 17.0);
     else
       stop("unknown keyword", key);
   }
+  return w;
+}
+
+/* The clump, or the end of the program */
+static sd_clump create(const sd_shape *shape, const sd_clump_options *o, sd_shells *shells)
+{
+  sd_clump c;
+  sd_clump_need need;
+  const sd_status status = sd_clump_create(shape, o, shells, &c, &need);
+  if (status == SD_ENOMEMORY) {
+    fprintf(stderr,
+            "clump_resistance: %ld points need %.3g bytes (dense) or %.3g (iterative), and memory is %.3g\n",
+            need.points, need.dense, need.iterative, o->memory);
+    exit(1);
+  }
+  if (status == SD_ESINGULAR) stop("two equal spheres lie at one point, or too nearly so", NULL);
+  if (status != SD_OK) stop("no answer", sd_status_string(status));
+  if (c.iterations) fprintf(stderr, "\n");
+  return c;
+}
+
+static void centre_of(const spheres *s, const sd_clump *c, double size, double centre[3])
+{
+  for (int d = 0; d < 3; d++) {
+    centre[d] = 0.0;
+    for (int k = 0; k < s->n; k++) centre[d] += s->x[3 * k + d] / s->n;
+    centre[d] += c->centre[d];
+    if (fabs(centre[d]) < 1e-12 * size) centre[d] = 0.0;
+  }
+}
+
+/* How it settles in its three main directions, and in the mean of all */
+static void print_settling(const sd_clump *c, double eta)
+{
+  double A[9], w[3], V[9];
+  for (int k = 0; k < 9; k++) A[k] = c->mobility[6 * (k / 3) + k % 3];
+  sd_eigen(3, A, w, V);
+  printf("settling       velocity for a unit force, and beside it the direction\n");
+  for (int k = 0; k < 3; k++)
+    printf(" %15.10g    %9.6f %9.6f %9.6f\n", w[k] / eta, tidy(V[k]), tidy(V[3 + k]), tidy(V[6 + k]));
+  printf(" %15.10g    mean of all orientations\n", 1.0 / (6.0 * SD_PI * eta * c->radius));
+}
+
+int main(int argc, char **argv)
+{
+  wishes wanted = read_wishes(argc, argv);
+  sd_clump_options *o = &wanted.of_clump;
+  double last_line = seconds(), centre[3];
+  o->progress = progress;
+  o->progress_ctx = &last_line;
 
   spheres s = read_spheres(argv[1]);
   sd_shape shape;
-  sd_clump c;
   sd_shells shells = {0};
-  sd_clump_need need;
   const double begin = seconds();
-  sd_status status = sd_shape_create(s.n, s.x, s.a, &shape);
+  const sd_status status = sd_shape_create(s.n, s.x, s.a, &shape);
   if (status == SD_ENOTFINITE) stop("a coordinate is not a number, or a radius is not > 0", NULL);
-  if (status == SD_OK) {
-    status = sd_clump_create(&shape, &o, &shells, &c, &need);
-    if (status == SD_ENOMEMORY) {
-      fprintf(stderr,
-              "clump_resistance: %ld points need %.3g bytes (dense) or %.3g (iterative), and "
-              "memory is %.3g\n",
-              need.points, need.dense, need.iterative, o.memory);
-      return 1;
-    }
-    if (status == SD_ESINGULAR) stop("two equal spheres lie at one point, or too nearly so", NULL);
-  }
   if (status != SD_OK) stop("no answer", sd_status_string(status));
-  if (c.iterations) fprintf(stderr, "\n");
+  sd_clump c = create(&shape, o, &shells);
 
-  double centre[3] = {0, 0, 0}, A[9], w[3], V[9];
-  for (int k = 0; k < s.n; k++)
-    for (int d = 0; d < 3; d++) centre[d] += s.x[3 * k + d] / s.n;
-  for (int d = 0; d < 3; d++) {
-    centre[d] += c.centre[d];
-    if (fabs(centre[d]) < 1e-12 * shape.size) centre[d] = 0.0;
-  }
+  centre_of(&s, &c, shape.size, centre);
   printf("clump          %d spheres, shell %d%s, %d points, %s, %.3g s\n", s.n,
-         sd_shell_size(o.shell),
-         o.shell > 1      ? ""
-             : o.rotation ? " with rotation"
-                          : " without rotation",
+         sd_shell_size(o->shell),
+         o->shell > 1      ? ""
+             : o->rotation ? " with rotation"
+                           : " without rotation",
          c.points, c.iterations ? "iterative" : "dense", seconds() - begin);
   printf("radius         %.10g (hydrodynamic: the sphere with the clump's mean mobility)\n",
          c.radius);
   printf("centre         %.10g %.10g %.10g (of hydrodynamic stress: all below is about it)\n",
          centre[0], centre[1], centre[2]);
   print_matrix("resistance     rows force, torque; columns velocity, angular velocity", c.R_centre,
-               eta, digits);
+               wanted.eta, wanted.digits);
   print_matrix("mobility       rows velocity, angular velocity; columns force, torque", c.mobility,
-               1.0 / eta, digits);
-  for (int k = 0; k < 9; k++) A[k] = c.mobility[6 * (k / 3) + k % 3];
-  sd_eigen(3, A, w, V);
-  printf("settling       velocity for a unit force, and beside it the direction\n");
-  for (int k = 0; k < 3; k++)
-    printf(" %15.10g    %9.6f %9.6f %9.6f\n", w[k] / eta, tidy(V[k]), tidy(V[3 + k]),
-           tidy(V[6 + k]));
-  printf(" %15.10g    mean of all orientations\n", 1.0 / (6.0 * SD_PI * eta * c.radius));
+               1.0 / wanted.eta, wanted.digits);
+  print_settling(&c, wanted.eta);
   print_tumbling(&c);
 
   sd_clump_free(&c);

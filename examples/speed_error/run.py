@@ -413,10 +413,7 @@ def check_scene(c, name, points, refused, wanted):
                 times[warm.replace(" warm_start no", "")] / times[warm], 0.8)
 
 
-def main():
-    if sys.argv[1:2] == ["--rank-of"]:
-        rank_of(*sys.argv[2:])
-        return
+def read_arguments():
     options = argparse.ArgumentParser(description="Time per step against error, for many settings of stokes_dynamics.")
     options.add_argument("--data", help="data file of atom_style hybrid sphere bond, units lj; all at rest: they fall")
     options.add_argument("--clumps", action="store_true",
@@ -433,10 +430,42 @@ def main():
         sys.exit(f"run.py: --error {given.error} must be > 0")
     if given.ranks < 1:
         sys.exit(f"run.py: --ranks {given.ranks} must be > 0")
+    return given
+
+
+def measure_data(say, given):
+    data = pathlib.Path(given.data).resolve()
+    if not data.is_file():
+        sys.exit(f"run.py: --data {given.data}: there is no such file")
+    exact = "clumps_only yes" if given.clumps else "cut_off_distance inf"
+    kinds = settings(exact, given.clumps, given.clumps, 1000, given.quick)
+    return [(data.name, *measure(say, data.name, data, exact, STEPS, kinds, given.error, given.ranks))]
+
+
+def measure_scenes(say, folder, given):
+    results = []
+    for name, (x, a, molecule), rigid, exact, steps in scenes(given.quick):
+        rng = np.random.default_rng(7)
+        own = rng.normal(size=(len(x) + 1, 3))     # of each sphere, or of each clump
+        v = np.array([0.0, 0.0, -1.0]) + 0.2 * (own[molecule] if rigid else own[:len(x)])
+        data = folder / "scene.data"
+        write_data(data, x, a, v, molecule)
+        kinds = list(settings(exact, molecule.any(), rigid, len(x), given.quick))
+        if len(x) > 2000:       # seconds per step: only what may be worth it
+            kinds = [k for k in kinds if k[0] == "cut-off" or not any(w in k[1] for w in
+                     (" 1e-6", "warm_start no", " 40 ", "update_every 20"))]
+        results.append((name, *measure(say, name, data, exact, steps, kinds, given.error, given.ranks)))
+    return results
+
+
+def main():
+    if sys.argv[1:2] == ["--rank-of"]:
+        rank_of(*sys.argv[2:])
+        return
+    given = read_arguments()
     folder = pathlib.Path(given.out).resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    say, results = Report(), []
-    c = Checks()
+    say, c = Report(), Checks()
     if given.screening:
         check_screening(c, screening(say, folder))
         sys.exit(c.finish())
@@ -444,24 +473,9 @@ def main():
     if given.large:
         results = measure_large(say, folder, given.quick, given.error, given.ranks)
     elif given.data:
-        data = pathlib.Path(given.data).resolve()
-        if not data.is_file():
-            sys.exit(f"run.py: --data {given.data}: there is no such file")
-        exact = "clumps_only yes" if given.clumps else "cut_off_distance inf"
-        kinds = settings(exact, given.clumps, given.clumps, 1000, given.quick)
-        results.append((data.name, *measure(say, data.name, data, exact, STEPS, kinds, given.error, given.ranks)))
+        results = measure_data(say, given)
     else:
-        for name, (x, a, molecule), rigid, exact, steps in scenes(given.quick):
-            rng = np.random.default_rng(7)
-            own = rng.normal(size=(len(x) + 1, 3))     # of each sphere, or of each clump
-            v = np.array([0.0, 0.0, -1.0]) + 0.2 * (own[molecule] if rigid else own[:len(x)])
-            data = folder / "scene.data"
-            write_data(data, x, a, v, molecule)
-            kinds = list(settings(exact, molecule.any(), rigid, len(x), given.quick))
-            if len(x) > 2000:       # seconds per step: only what may be worth it
-                kinds = [k for k in kinds if k[0] == "cut-off" or not any(w in k[1] for w in
-                         (" 1e-6", "warm_start no", " 40 ", "update_every 20"))]
-            results.append((name, *measure(say, name, data, exact, steps, kinds, given.error, given.ranks)))
+        results = measure_scenes(say, folder, given)
         screened = screening(say, folder)
     draw(folder / f"{kept}.png", results, given.error)
     (folder / f"{kept}.txt").write_text("\n".join(say.lines) + "\n")

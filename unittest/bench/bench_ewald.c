@@ -71,10 +71,16 @@ static double all_pairs(void)
   return best;
 }
 
+typedef struct {
+  sd_ewald_box box;
+  double *x, *a, *F;
+} scene;
+
 /* Product at a tolerance; place and apply times, best of RUNS. STOKESDYN_ONE_LEVEL: never two */
-static void product(const row *r, const double *x, const double *a, const double *F, double tolerance,
-                    const sd_ewald_box *box, double *u, double *times, sd_ewald *how)
+static void product(const row *r, const scene *of, double tolerance, double *u, double *times, sd_ewald *how)
 {
+  const double *x = of->x, *a = of->a, *F = of->F;
+  const sd_ewald_box *box = &of->box;
   double *w = malloc(sizeof(double) * (size_t) r->n);
   for (int i = 0; i < r->n; i++) w[i] = 1.0;
   sd_ewald_sizes sizes = periodic_sizes(a, r->n);
@@ -128,11 +134,12 @@ static void measure(const row *r)
     for (int d = 0; d < r->width; d++) F[r->width * i + d] = uniform(&seed, -1, 1) * pow(a[i], d < 3 ? 1 : 2);
   double times[3], reference[3], off = 0.0, all = 0.0, T4 = all_pairs();
   sd_ewald how, tight;
-  product(r, x, a, F, r->tolerance, &box, u, times, &how);
+  const scene cloud = {box, x, a, F};
+  product(r, &cloud, r->tolerance, u, times, &how);
   T4 = fmin(T4, all_pairs());
   struct rusage usage;
   getrusage(RUSAGE_SELF, &usage);
-  product(r, x, a, F, (r->n > 100000 ? 0.1 : 0.01) * r->tolerance, &box, v, reference, &tight);
+  product(r, &cloud, (r->n > 100000 ? 0.1 : 0.01) * r->tolerance, v, reference, &tight);
   for (size_t i = 0; i < n; i++)
     for (int d = 0; d < 3; d++) {
       off += pow(u[r->width * i + d] - v[r->width * i + d], 2);

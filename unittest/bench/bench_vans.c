@@ -81,18 +81,19 @@ static void grains(double ratio, int n, int felt_by_volume, sd_drag_law drag_law
                                  .felt_by_volume = felt_by_volume, .drag = drag_law};
   const sd_vans_averaging how = {0, 0, NULL};
   const sd_vans_grains grains = {n, x, v, radius, NULL, NULL, NULL};
+  const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
   const int repeat = 400000 / n;
   for (int r = -1; r < RUNS; r++) {
     double t = cpu();
     for (int k = 0; k < repeat; k++) {
       sd_hindrance_of(drag_law, N, phi, 3.1, hindrance);
       memset(sums, 0, N * SD_VANS_ROWS * sizeof(double));
-      sd_vans_average(&mesh, &law, &how, U, hindrance, &grains, sums, V);
+      sd_vans_average(&stream, &how, &grains, sums, V);
     }
     if (r >= 0) averages[r] = (cpu() - t) / repeat / n * 1e9;
     t = cpu();
     for (int k = 0; k < repeat; k++)
-      sd_vans_forces(&mesh, &law, U, hindrance, &grains, F, drag);
+      sd_vans_forces(&stream, &grains, F, drag);
     if (r >= 0) forces[r] = (cpu() - t) / repeat / n * 1e9;
   }
   *average = median(averages, RUNS);

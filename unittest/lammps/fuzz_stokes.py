@@ -82,7 +82,7 @@ def judge_stokes(case, words, how):
         case.faults.append("wall")     # a second one is looked for before all else
     s = case.value
     cut, clumps = s("cut_off_distance"), s("clumps_only") == "yes"
-    shell, rigid, rotation = int(s("shell", "1")), s("rigid_clumps", "no"), s("rotation") == "yes"
+    shell, rigid = int(s("shell", "1")), s("rigid_clumps", "no")
     case.refuse_if(how == "no radius", "radius")
     case.refuse_if("visc" not in case.settings, "visc")
     case.refuse_if(cut is None and not clumps, "cut_off_distance")
@@ -95,10 +95,10 @@ def judge_stokes(case, words, how):
                    "far_field", "precondition", "tensor")
     case.refuse_if(s("precondition") == "waves" and (not everybody or how != "periodic" or s("algorithm", "1") != "2"),
                    "precondition")
-    lubricated, gap = s("lubrication") == "yes", s("lubrication_gap", "1e-3")
+    lubricated = s("lubrication") == "yes"
     reach = s("lubrication_range", "1" if s("multiblob", "1") != "1" else "2")
     blobs = int(s("multiblob", "1"))
-    turns = rotation or shell != 1 or blobs != 1
+    turns = s("rotation") == "yes" or shell != 1 or blobs != 1
     case.refuse_if(lubricated and (not everybody or not turns), "lubrication")
     case.refuse_if(blobs != 1 and (not everybody or s("tensor") == "oseen" or "shell" in case.settings or
                                    s("rotation") == "no" or "precondition" in case.settings or case.level != BAD and
@@ -111,6 +111,17 @@ def judge_stokes(case, words, how):
                        or s("precondition") == "waves" or shell != 1 or rigid != "no" and clumps, "wall")
         if s("fluid_velocity") or case.settings["wall"][1] == "EDGE":
             case.says(ODD, "wall", "fluid_velocity")
+    judge_stokes_choices(case, how)
+
+
+def judge_stokes_choices(case, how):
+    """Films, clumps and what goes with them"""
+    s = case.value
+    cut, clumps = s("cut_off_distance"), s("clumps_only") == "yes"
+    shell, rigid, rotation = int(s("shell", "1")), s("rigid_clumps", "no"), s("rotation") == "yes"
+    turns = rotation or shell != 1 or int(s("multiblob", "1")) != 1
+    lubricated, gap = s("lubrication") == "yes", s("lubrication_gap", "1e-3")
+    reach = s("lubrication_range", "1" if s("multiblob", "1") != "1" else "2")
     case.refuse_if(not lubricated and "lubrication_gap" in case.settings, "lubrication_gap")
     case.refuse_if(not lubricated and "lubrication_range" in case.settings, "lubrication_range")
     case.refuse_if(case.level != BAD and float(gap) >= float(reach), "lubrication_gap")

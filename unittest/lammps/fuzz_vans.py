@@ -130,6 +130,12 @@ def judge_vans(case, words, how):
         case.says(ODD, "wall_roughness")
     if held or s("surface") == "follow" or "upflow" in case.settings or "added_mass" in case.settings:
         case.says(ODD, "surface", "discharge", "mesh", "upflow", "added_mass")
+    judge_vans_values(case, how)
+
+
+def judge_vans_values(case, how):
+    """Numbers that do not go together, and scenes of which the page says nothing"""
+    s = case.value
     if s("mesh", "file") != "file":
         cells, dz, bottom = (float(w) for w in case.settings["mesh"])
         for name in ("profile", "given", "convective"):

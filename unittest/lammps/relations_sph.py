@@ -147,8 +147,7 @@ def build(options, seed):
 
 
 def commands(s, o, d, up, lo, hi, each):
-    flat, walled = bool(d), o["space"] in WALLED
-    grains = o["grains"] == "yes"
+    flat, grains = bool(d), o["grains"] == "yes"
     s.head = ["units lj", f"dimension {o['dim']}", "atom_style hybrid sph sphere" if grains else "atom_style sph"]
     s.head += ["comm_modify vel yes"] * grains
     spans = " ".join(f"{a!r} {b!r}" for a, b in zip(lo, hi))
@@ -158,6 +157,20 @@ def commands(s, o, d, up, lo, hi, each):
     s.groups = ["group grains type 5", "group moves type 1 4 5"] * grains
     s.groups += ["group fluid type 1 4", "group wall type 2 3", "group first type 1 2 3", "group second type 4"]
     s.define = [f"neighbor <L {o['skin']}> bin", "neigh_modify delay 0 every 1 check yes"]
+    pair_style(s, o, d)
+    fluid_fixes(s, o, d, up)
+    border_fixes(s, o, d, up)
+    s.fixes.append("fix move fluid nve/sph")
+    s.fixes += ["fix roll grains nve/sphere", "fix couple grains sph/grains drag beetstra"] * grains
+    s.fixes += ["fix flat all enforce2d"] * flat
+    s.fixes.append("compute rho all sph/rho/atom")
+    look(s, o, d, up)
+    columns(s, o, d)
+    # implicit friction is left at a residual of 1e-8
+    s.dt, s.steps, s.tolerance = 0.01, o["steps"], 1e-6 if o["implicit"] == "yes" else 1e-8
+
+
+def pair_style(s, o, d):
     shifts = o["scheme"] in ("shift", "pliant", "correction")
     words = f"{o['kernel']} <L 1.3>" + " artVisc 0.1 0.0 <area 0.01>" * (o["artVisc"] == "yes")
     words += " tensCorr 0.2 <L 1.0>" * (o["tensCorr"] == "yes")
@@ -168,15 +181,22 @@ def commands(s, o, d, up, lo, hi, each):
     words += {"shift": " shift yes", "pliant": " shift pliant", "correction": " correction yes"}.get(o["scheme"], "")
     coefficients = "c <V 10>" + " deltap <L 1.0>" * shifts
     s.pair = [("sph/artVisc/tensCorr", words, coefficients)]
-    if grains:
+    if o["grains"] == "yes":
         s.pair = [("soft", "<L 0.6>", [("* *", "<E 0.0>"), ("5 5", "<E 0.5>")]),
                   ("sph/artVisc/tensCorr", words, [("1*4 1*4", coefficients)])]
-    state = {"Tait": f"Tait <P{d} 14.2857> <rho{d} 1.0> 7", "relativ": f"relativ <V2 100> <rho{d} 1.0>",
-             "absolut": "absolut <V 10>", "tension no": f"Tait <P{d} 14.2857> <rho{d} 1.0> 7 tension no"}[o["state"]]
+
+
+def weight_of(o, up):
     pull = [0.0, 0.0, 0.0]
     pull[up] = -0.1 if o["gravity"] == "yes" else 0.0
-    weight = "<A {} {} {}>".format(*pull)
-    direction = "<1 {} {} {}>".format(*[p / 0.1 for p in pull])
+    return pull
+
+
+def fluid_fixes(s, o, d, up):
+    grains = o["grains"] == "yes"
+    state = {"Tait": f"Tait <P{d} 14.2857> <rho{d} 1.0> 7", "relativ": f"relativ <V2 100> <rho{d} 1.0>",
+             "absolut": "absolut <V 10>", "tension no": f"Tait <P{d} 14.2857> <rho{d} 1.0> 7 tension no"}[o["state"]]
+    direction = "<1 {} {} {}>".format(*[p / 0.1 for p in weight_of(o, up)])
     particles = "sph" if grains else "all"
     s.groups += ["group sph type 1 2 3 4"] * grains
     s.fixes = [f"fix p {'first' if o['fluids'] == 2 else particles} sph/pressure {state}"]
@@ -187,6 +207,11 @@ def commands(s, o, d, up, lo, hi, each):
                    f"fix d {particles} sph/density/continuity" + rate + " volume yes" * (o["volume"] == "yes"))
     s.fixes += ["fix filter fluid sph/density/corr shepard every 2"] * (o["filter"] == "yes")
     s.fixes += [f"fix g {'moves' if grains else 'fluid'} gravity <A 0.1> vector {direction}"] * (o["gravity"] == "yes")
+
+
+def border_fixes(s, o, d, up):
+    flat, walled = bool(d), o["space"] in WALLED
+    weight = "<A {} {} {}>".format(*weight_of(o, up))
     if walled:
         s.fixes.append("fix w wall wall/adami/sph" + f" gravity {weight}" * (o["gravity"] == "yes")
                        + {"slip": " slip yes", "suction no": " suction no",
@@ -208,11 +233,10 @@ def commands(s, o, d, up, lo, hi, each):
     if o["tension"] == "yes":
         angles = " contact 2 70" * walled + " 3 120" * (o["space"] == "body")
         s.fixes.append(f"fix pull fluid sph/tension <{'F' if flat else 'k'} 1.0>{angles} force yes")
-    s.fixes.append("fix move fluid nve/sph")
-    s.fixes += ["fix roll grains nve/sphere", "fix couple grains sph/grains drag beetstra"] * grains
-    s.fixes += ["fix flat all enforce2d"] * flat
-    s.fixes.append("compute rho all sph/rho/atom")
-    look(s, o, d, up)
+
+
+def columns(s, o, d):
+    flat, grains = bool(d), o["grains"] == "yes"
     s.columns = [("p", "xu yu zu"), ("V", "vx vy vz"), ("rho" + d, "c_rho"), ("P" + d, "f_p")]
     s.columns += [("drho" + d, "f_d")] * (o["scheme"] != "summation")
     if o["tension"] == "yes":
@@ -221,8 +245,6 @@ def commands(s, o, d, up, lo, hi, each):
                       ("L" if flat else "area", "f_pull[5]")]
     s.columns += [("1", "f_couple[1]"), ("F", "f_couple[2] f_couple[3] f_couple[4]")] * grains
     s.globals += [("F", "f_couple[1] f_couple[2] f_couple[3]"), ("1", "f_couple[4]")] * grains
-    # implicit friction is left at a residual of 1e-8
-    s.dt, s.steps, s.tolerance = 0.01, o["steps"], 1e-6 if o["implicit"] == "yes" else 1e-8
 
 
 def look(s, o, d, up):

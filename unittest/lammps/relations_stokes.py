@@ -149,6 +149,28 @@ def build(options, seed):
         mu = {"mu": [R.gauss(0, 1) for _ in range(3)]} if o["directions"] == "mu" else {}
         s.atom(p, v if "forces" in o["motion"] else (0, 0, 0), diameter=2 * a, density=1.7, molecule=m, **mu)
     lone = [k + 1 for k, a in enumerate(s.atoms) if not a["molecule"]]
+    turning = o["model"] or o["rigid"] == "shell"
+    box(s, o)
+    fluid(s, o)
+    s.pair = ([("gran/hooke", "<k 50> NULL 0 NULL 0 0", "")] * (o["contacts"] == "yes") +
+              [("stokes_dynamics", pair_words(o), "")])
+    if o["contacts"] == "yes":
+        s.define.append("comm_modify vel yes")
+    s.fixes = ["fix pull odd addforce <F 3 1 -4>", "fix push even addforce <F -2 1.5 -2.5>"]
+    s.columns = [("p", "xu yu zu"), ("V", "vx vy vz")]
+    if "forces" in o["motion"]:
+        inertia(s, o)
+    else:
+        without_inertia(s, o, lone, seed)
+    look(s, o)
+    s.columns += [("W", "omegax omegay omegaz")] if turning else []
+    s.output_between = "f_report" if "forces" in o["motion"] else "f_move"
+    s.other = other_words(o, turning)
+    s.dt, s.steps, s.tolerance = 0.004, o["steps"], 2e-5 if o["noise"] == "yes" or o["films"] == "yes" else 2e-6
+    return s
+
+
+def box(s, o):
     closed = o["space"] in CLOSED
     s.head = ["units lj", "atom_style hybrid sphere bond" + " dipole" * (o["directions"] == "mu")]
     slab = o["space"] in SLABS
@@ -162,9 +184,13 @@ def build(options, seed):
     s.groups = [f"group odd id <ids {' '.join(str(k + 1) for k in range(0, len(s.atoms), 2))}>",
                 "group even subtract all odd"]
     s.define = [f"neighbor <L {o['skin']}> bin"]
-    if closed:
+
+
+def fluid(s, o):
+    """Its flow and viscosity, and who is in it"""
+    if o["space"] in CLOSED:
         flow, eta = "0.3*sin(2*PI*Z/18) 0 0.1*cos(2*PI*X/18)", "1.3+0.05*sin(2*PI*X/18)"
-    elif slab:
+    elif o["space"] in SLABS:
         height = "(Z+8.3)" if o["space"] == "floor" else "0.1*(Z+8.3)*(9-Z)"
         flow, eta = f"0.2*{height} 0.05*{height} 0", "1.3+0.05*sin(2*PI*X/18)"
     else:
@@ -178,16 +204,9 @@ def build(options, seed):
     s.groups += [f"group some id <ids {' '.join(str(k) for k in range(1, len(s.atoms) + 1) if k % 4 != 3)}>"] * (
         o["select"] == "group")
     s.define += ["region zone block <block -6 5 INF INF INF 6>"] * (o["select"] == "region")
-    s.pair = ([("gran/hooke", "<k 50> NULL 0 NULL 0 0", "")] * (o["contacts"] == "yes") +
-              [("stokes_dynamics", pair_words(o), "")])
-    if o["contacts"] == "yes":
-        s.define.append("comm_modify vel yes")
-    s.fixes = ["fix pull odd addforce <F 3 1 -4>", "fix push even addforce <F -2 1.5 -2.5>"]
-    s.columns = [("p", "xu yu zu"), ("V", "vx vy vz")]
-    if "forces" in o["motion"]:
-        inertia(s, o)
-    else:
-        without_inertia(s, o, lone, seed)
+
+
+def look(s, o):
     if o["look"] == "stress":
         s.fixes.append("compute stress all stokes_dynamics/stress")
         s.globals += [("stress", " ".join(f"c_stress[{k}]" for k in range(1 + 6 * part, 7 + 6 * part)))
@@ -196,20 +215,18 @@ def build(options, seed):
             s.globals.pop()      # the virial of fix rigid/small, which depends on where the origin is
     if o["look"] == "field":
         s.grid = ((5, 4, 6), (-6.0, -5.0, -4.0), (6.0, 5.0, 7.0))
-    turning = o["model"] or o["rigid"] == "shell"
-    s.columns += [("W", "omegax omegay omegaz")] if turning else []
-    s.output_between = "f_report" if "forces" in o["motion"] else "f_move"
-    s.other = "cut_off_distance inf visc <eta 2> relative_tolerance 1e-6 " + " fluid_velocity box" * (
-        o["flow"] == "box")
-    s.other += " add_force yes" * (o["motion"] == "forces inside")
-    s.other += " rigid_clumps yes rotation yes" if o["clumps"] else " rotation yes" if turning else ""
-    if o["look"] == "stress" or slab or o["drive"] == "squirm":
-        s.other = s.other.replace("rotation yes", "") + (" multiblob 42" if o["look"] == "stress" else " multiblob 12"
-                                                         if turning else "")
-    s.other += " wall <side zlo -8.3>" * (o["space"] == "floor") + " wall <side zlo -8.3> <side zhi 9.0>" * (
+
+
+def other_words(o, turning):
+    words = "cut_off_distance inf visc <eta 2> relative_tolerance 1e-6 " + " fluid_velocity box" * (o["flow"] == "box")
+    words += " add_force yes" * (o["motion"] == "forces inside")
+    words += " rigid_clumps yes rotation yes" if o["clumps"] else " rotation yes" if turning else ""
+    if o["look"] == "stress" or o["space"] in SLABS or o["drive"] == "squirm":
+        words = words.replace("rotation yes", "")
+        words += " multiblob 42" if o["look"] == "stress" else " multiblob 12" if turning else ""
+    words += " wall <side zlo -8.3>" * (o["space"] == "floor") + " wall <side zlo -8.3> <side zhi 9.0>" * (
         o["space"] in ("slit", "flux"))
-    s.dt, s.steps, s.tolerance = 0.004, o["steps"], 2e-5 if o["noise"] == "yes" or o["films"] == "yes" else 2e-6
-    return s
+    return words
 
 
 def inertia(s, o):

@@ -13,6 +13,13 @@ typedef struct {
   sd_sph_scheme scheme;
 } terms;
 
+INLINE terms terms_in_copy(terms has, sd_sph_kernel kernel, int many)
+{
+  has.kernel = kernel;
+  has.many = many;
+  return has;
+}
+
 /* Momentum goes along with du: of correction it is an acceleration. */
 #define CARRIES(has)                                                                              \
   ((has).scheme == SD_SPH_SHIFT || (has).scheme == SD_SPH_SHIFT_PLIANT ||                           \
@@ -190,13 +197,11 @@ INLINE double *hand_out(const vec F[3], int count, double *each)
   return each;
 }
 
-/* Over a half list: what i gets is taken from j. bare: there are no terms. */
+/* Over a half list: what i gets is taken from j. */
 INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
-                     int rates, double *f4, double *each, int bare, sd_sph_scheme scheme,
-                     sd_sph_kernel kernel, int many)
+                     double *f4, double *each, terms has, sd_sph_kernel kernel, int many)
 {
-  const terms has = {kernel, many, !bare && model->artvisc, !bare && model->tenscorr, rates,
-                     bare ? SD_SPH_INVISCID : model->friction, scheme};
+  has = terms_in_copy(has, kernel, many);
   vec nearest = all(HUGE_VAL);
   for (int ii = 0; ii < list->n; ii++) {
     const int i = list->first[ii], count = list->count[i];
@@ -255,9 +260,9 @@ INLINE vec pressures_on(int wall, const pairs_of_one *q, sd_sph_scheme scheme)
 /* With correction, over a list both ways. Between fluid particles without friction B_j is not
  * needed, and B_i stands before the sum. */
 INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
-                     double *f4, double *each, sd_sph_scheme scheme, sd_sph_kernel kernel, int many)
+                     double *f4, double *each, terms has, sd_sph_kernel kernel, int many)
 {
-  const terms has = {kernel, many, model->artvisc, 0, 0, model->friction, scheme};
+  has = terms_in_copy(has, kernel, many);
   vec nearest = all(HUGE_VAL);
   for (int i = 0; i < list->n; i++) {
     const particle of_i = particle_of(model, p, i, has);
@@ -269,7 +274,7 @@ INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const s
       const int *j = list->neighbor[i] + at;
       const pairs_of_one q = meet(p, &of_i, j, has);
       nearest = smaller(q.r2, nearest);
-      const vec weight = -q.m * q.inverse * q.g * pressures_on(wall, &q, scheme);
+      const vec weight = -q.m * q.inverse * q.g * pressures_on(wall, &q, has.scheme);
       vec F[3], mine[3], ratio = all(1.0);
       if (pairwise) ratio = corrected(p->B, of_i.B, j, q.d, q.r2, mine);
       opposite_forces(model, p, &of_i, j, &q, ratio, has, F);

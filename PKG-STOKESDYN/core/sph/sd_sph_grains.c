@@ -99,19 +99,18 @@ void sd_sph_look_around(const sd_cells *cells, const double *points, int n, cons
 }
 
 void sd_sph_grain_weights(sd_sph_kernel kernel, double h, const sd_sph_around *list,
-                          const double *x, const double *points, const double *volume,
-                          const int *wall, double *weight, double *wet)
+                          const double *x, const sd_sph_points *points, double *wet)
 {
   const double scale = sd_sph_W(kernel, 3, 0.0, h) / sd_sph_K(kernel, 0.0);
-  double d[3];
+  double d[3], *weight = list->weight;
   for (int j = 0; j < list->n; j++) {
     double of_water = 0.0, of_walls = 0.0;
     for (int p = list->first[j]; p < list->first[j + 1]; p++) {
       const int a = list->particle[p];
-      const double r2 = square_of_distance(x + 3 * (size_t) j, points + 3 * (size_t) a, d),
-                   VW = r2 < 4.0 * h * h ? volume[a] * scale * sd_sph_K(kernel, sqrt(r2) / h) : 0.0;
-      weight[p] = wall[a] ? 0.0 : VW;
-      if (wall[a])
+      const double r2 = square_of_distance(x + 3 * (size_t) j, points->x + 3 * (size_t) a, d);
+      const double VW = r2 < 4.0 * h * h ? points->volume[a] * scale * sd_sph_K(kernel, sqrt(r2) / h) : 0.0;
+      weight[p] = points->wall[a] ? 0.0 : VW;
+      if (points->wall[a])
         of_walls += VW;
       else
         of_water += VW;
@@ -122,31 +121,33 @@ void sd_sph_grain_weights(sd_sph_kernel kernel, double h, const sd_sph_around *l
   }
 }
 
-void sd_sph_grain_fractions(const sd_sph_around *list, const double *V, const double *volume,
-                            const double *weight, const double *wet, double *phi)
+void sd_sph_grain_fractions(const sd_sph_around *list, const sd_sph_grains *grains,
+                            const double *volume, double *phi)
 {
+  const double *weight = list->weight;
   for (int j = 0; j < list->n; j++)
     for (int p = list->first[j]; p < list->first[j + 1]; p++)
       if (weight[p] > 0.0)
-        phi[list->particle[p]] += wet[j] * V[j] * weight[p] / volume[list->particle[p]];
+        phi[list->particle[p]] += grains->wet[j] * grains->V[j] * weight[p] / volume[list->particle[p]];
 }
 
-void sd_sph_grain_flux(const sd_sph_around *list, const double *V, const double *volume,
-                       const double *weight, const double *wet, const double *v, double *flux)
+void sd_sph_grain_flux(const sd_sph_around *list, const sd_sph_grains *grains,
+                       const double *volume, const double *v, double *flux)
 {
+  const double *weight = list->weight;
   for (int j = 0; j < list->n; j++)
     for (int p = list->first[j]; p < list->first[j + 1]; p++) {
       if (!(weight[p] > 0.0)) continue;
       const size_t a = list->particle[p];
-      const double share = wet[j] * V[j] * weight[p] / volume[a];
+      const double share = grains->wet[j] * grains->V[j] * weight[p] / volume[a];
       for (int c = 0; c < 3; c++) flux[3 * a + c] += share * v[3 * (size_t) j + c];
     }
 }
 
 /* Sums that stay in registers: this is most of what grains cost. */
-void sd_sph_grain_vector_means(const sd_sph_around *list, const double *weight,
-                               const double *vectors, double *means)
+void sd_sph_grain_vector_means(const sd_sph_around *list, const double *vectors, double *means)
 {
+  const double *weight = list->weight;
   for (int j = 0; j < list->n; j++) {
     double x = 0.0, y = 0.0, z = 0.0;
     for (int p = list->first[j]; p < list->first[j + 1]; p++) {
@@ -161,25 +162,25 @@ void sd_sph_grain_vector_means(const sd_sph_around *list, const double *weight,
   }
 }
 
-void sd_sph_grain_means(const sd_sph_around *list, const double *weight, const double *numbers,
-                        double *means)
+void sd_sph_grain_means(const sd_sph_around *list, const double *numbers, double *means)
 {
   for (int j = 0; j < list->n; j++) {
     double sum = 0.0;
     for (int p = list->first[j]; p < list->first[j + 1]; p++)
-      sum += weight[p] * numbers[list->particle[p]];
+      sum += list->weight[p] * numbers[list->particle[p]];
     means[j] = sum;
   }
 }
 
-void sd_sph_grain_shares(const sd_sph_around *list, const double *V, const double *volume,
-                         const double *weight, const double *wet, double *own)
+void sd_sph_grain_shares(const sd_sph_around *list, const sd_sph_grains *grains,
+                         const double *volume, double *own)
 {
+  const double *weight = list->weight;
   for (int j = 0; j < list->n; j++) {
     double sum = 0.0;
     for (int p = list->first[j]; p < list->first[j + 1]; p++)
       if (weight[p] > 0.0) sum += weight[p] * weight[p] / volume[list->particle[p]];
-    own[j] = wet[j] * V[j] * sum;
+    own[j] = grains->wet[j] * grains->V[j] * sum;
   }
 }
 
@@ -205,11 +206,11 @@ void sd_sph_grain_phi(int n, const double *mean, const double *own, double *phi)
   }
 }
 
-void sd_sph_grain_stresses(int n, const double *means, const double *wet, const double *V,
-                           double *F)
+void sd_sph_grain_stresses(int n, const sd_sph_grains *grains, const double *means, double *F)
 {
   for (int j = 0; j < n; j++)
-    for (int c = 0; c < 3; c++) F[3 * (size_t) j + c] = wet[j] * V[j] * means[3 * (size_t) j + c];
+    for (int c = 0; c < 3; c++)
+      F[3 * (size_t) j + c] = grains->wet[j] * grains->V[j] * means[3 * (size_t) j + c];
 }
 
 /* D/w for the slip w without the own flow, and what of it that flow takes: w = seen/(1 - taken). */
@@ -226,56 +227,52 @@ static double drag_of(const sd_sph_grain_law *law, double rho, double a, double 
 }
 
 /* The slip by iteration: a step of it changes `taken`, at most a half, by little. */
-void sd_sph_grain_drag(const sd_sph_grain_law *law, int n, const double *a, const double *u,
-                       const double *v, const double *rho, const double *phi, const double *wet,
-                       double *k)
+void sd_sph_grain_drag(const sd_sph_grain_law *law, int n, const sd_sph_grains *grains,
+                       const sd_sph_slip *slip, const double *rho, const double *phi, double *k)
 {
   enum { MOST = 20 };
   for (int j = 0; j < n; j++) {
     k[j] = 0.0;
-    if (!(wet[j] > 0.0)) continue;
+    if (!(grains->wet[j] > 0.0)) continue;
     double d[3], hindrance, taken = 0.0, factor = 0.0;
-    const double seen = sqrt(square_of_distance(u + 3 * (size_t) j, v + 3 * (size_t) j, d));
+    const double seen = sqrt(square_of_distance(slip->u + 3 * (size_t) j, slip->v + 3 * (size_t) j, d));
     sd_hindrance_of(law->drag, 1, phi + j, law->exponent, &hindrance);
     for (int round = 0; round < MOST; round++) {
       const double before = taken;
-      factor = drag_of(law, rho[j], a[j], phi[j], hindrance, seen / (1.0 - before), &taken);
+      factor = drag_of(law, rho[j], grains->a[j], phi[j], hindrance, seen / (1.0 - before), &taken);
       if (fabs(taken - before) < 1e-6) break;
     }
-    k[j] = wet[j] * factor / (1.0 - taken);
+    k[j] = grains->wet[j] * factor / (1.0 - taken);
   }
 }
 
-void sd_sph_grain_load(const sd_sph_around *list, const double *weight, const double *k,
-                       double *total)
+void sd_sph_grain_load(const sd_sph_around *list, const double *k, double *total)
 {
   for (int j = 0; j < list->n; j++)
     for (int p = list->first[j]; p < list->first[j + 1]; p++)
-      total[list->particle[p]] += weight[p] * k[j];
+      total[list->particle[p]] += list->weight[p] * k[j];
 }
 
-void sd_sph_grain_drags(const sd_sph_around *list, double dt, const double *weight, const double *u,
-                        const double *v, const double *M, const double *k, const double *slowed,
-                        double *D)
+void sd_sph_grain_drags(const sd_sph_around *list, double dt, const sd_sph_slip *slip,
+                        const double *M, const double *k, const double *slowed, double *D)
 {
   for (int j = 0; j < list->n; j++) {
     double rate = k[j] / M[j];
     for (int p = list->first[j]; p < list->first[j + 1]; p++)
-      rate += weight[p] * slowed[list->particle[p]];
+      rate += list->weight[p] * slowed[list->particle[p]];
     for (int c = 0; c < 3; c++) {
       const size_t at = 3 * (size_t) j + c;
-      D[at] = k[j] * (u[at] - v[at]) / (1.0 + dt * rate);
+      D[at] = k[j] * (slip->u[at] - slip->v[at]) / (1.0 + dt * rate);
     }
   }
 }
 
-void sd_sph_grain_reactions(const sd_sph_around *list, const double *weight, const double *F,
-                            double *reaction)
+void sd_sph_grain_reactions(const sd_sph_around *list, const double *F, double *reaction)
 {
   for (int j = 0; j < list->n; j++)
     for (int p = list->first[j]; p < list->first[j + 1]; p++)
       for (int c = 0; c < 3; c++)
-        reaction[3 * (size_t) list->particle[p] + c] -= weight[p] * F[3 * (size_t) j + c];
+        reaction[3 * (size_t) list->particle[p] + c] -= list->weight[p] * F[3 * (size_t) j + c];
 }
 
 void sd_sph_grain_rates(int n, const double *phi, const double *slope, const double *du, double *rate)

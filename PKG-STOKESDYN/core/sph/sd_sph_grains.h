@@ -65,11 +65,23 @@ double sd_sph_wake_of(const sd_sph_wake *wake, double Re_h, double K);
 double sd_sph_structure(double phi);
 
 /* The particles around each grain: those of grain j are particle[first[j] .. first[j+1] - 1],
- * indices into the points that the cells were filled with. */
+ * indices into the points that the cells were filled with, with their weights w_aj: 0 of walls. */
 typedef struct {
   int n;
   const int *first, *particle;
+  double *weight;
 } sd_sph_around;
+
+/* Of the m particles: places [3m], volumes V_a [m], wall [m] 1: of a wall */
+typedef struct {
+  const double *x, *volume;
+  const int *wall;
+} sd_sph_points;
+
+/* Of the n grains: radii and volumes [n], their wetness t_j [n], 0 where there is no water */
+typedef struct {
+  const double *a, *V, *wet;
+} sd_sph_grains;
 
 /* Particles of points [3m], which fill the cells (sides of about reach), that are nearer than
  * reach to the grains at x [3n]. first [n+1] is always written; particle [first[n]] unless it is
@@ -77,30 +89,26 @@ typedef struct {
 void sd_sph_look_around(const sd_cells *cells, const double *points, int n, const double *x,
                         double reach, int *first, int *particle);
 
-/* weight [first[n]]: w_aj of water, 0 of walls; wet [n]: t_j, 0 where there is no water. x [3n] of
- * grains; of the m particles: points [3m], volume [m] V_a, wall [m] 1: of a wall. */
+/* Finds the weights of the list, and wet [n]: t_j. x [3n] of grains */
 void sd_sph_grain_weights(sd_sph_kernel kernel, double h, const sd_sph_around *list,
-                          const double *x, const double *points, const double *volume,
-                          const int *wall, double *weight, double *wet);
+                          const double *x, const sd_sph_points *points, double *wet);
 
-/* Adds phi_a to phi [m], of the grains' volumes V [n]. */
-void sd_sph_grain_fractions(const sd_sph_around *list, const double *V, const double *volume,
-                            const double *weight, const double *wet, double *phi);
+/* Adds phi_a to phi [m]; volume [m] of the particles, as below. */
+void sd_sph_grain_fractions(const sd_sph_around *list, const sd_sph_grains *grains,
+                            const double *volume, double *phi);
 
 /* Adds what grains of velocities v [3n] carry, q_a - eps_a v_a, to flux [3m]. */
-void sd_sph_grain_flux(const sd_sph_around *list, const double *V, const double *volume,
-                       const double *weight, const double *wet, const double *v, double *flux);
+void sd_sph_grain_flux(const sd_sph_around *list, const sd_sph_grains *grains,
+                       const double *volume, const double *v, double *flux);
 
 /* Means of the water at each grain, means [n] out: sum_a w_aj of numbers [m]; and [3n] of vectors
  * [3m]. */
-void sd_sph_grain_means(const sd_sph_around *list, const double *weight, const double *numbers,
-                        double *means);
-void sd_sph_grain_vector_means(const sd_sph_around *list, const double *weight,
-                               const double *vectors, double *means);
+void sd_sph_grain_means(const sd_sph_around *list, const double *numbers, double *means);
+void sd_sph_grain_vector_means(const sd_sph_around *list, const double *vectors, double *means);
 
 /* The grain's own share of phi at its place: sum_a w_aj t_j V_j w_aj / V_a. own [n] */
-void sd_sph_grain_shares(const sd_sph_around *list, const double *V, const double *volume,
-                         const double *weight, const double *wet, double *own);
+void sd_sph_grain_shares(const sd_sph_around *list, const sd_sph_grains *grains,
+                         const double *volume, double *own);
 
 typedef struct {
   sd_sph_kernel kernel;
@@ -115,31 +123,31 @@ typedef struct {
 void sd_sph_grain_phi(int n, const double *mean, const double *own, double *phi);
 
 /* The part of F that is the water's stress, [3n]: of means <F_a/V_a> [3n]. */
-void sd_sph_grain_stresses(int n, const double *means, const double *wet, const double *V,
-                           double *F);
+void sd_sph_grain_stresses(int n, const sd_sph_grains *grains, const double *means, double *F);
 
-/* D_j/(u_j - v_j) of each grain of radius a, k [n]; u, v [3n] at one time, rho [n] of the water
- * itself. The own flow takes half of the slip at most. */
-void sd_sph_grain_drag(const sd_sph_grain_law *law, int n, const double *a, const double *u,
-                       const double *v, const double *rho, const double *phi, const double *wet,
-                       double *k);
+/* What the laws of drag ask at the grains: velocities [3n] of the water and of grains, at one time */
+typedef struct {
+  const double *u, *v;
+} sd_sph_slip;
+
+/* D_j/(u_j - v_j) of each grain, k [n]; rho [n] of the water itself. The own flow takes half of the slip at
+ * most. */
+void sd_sph_grain_drag(const sd_sph_grain_law *law, int n, const sd_sph_grains *grains,
+                       const sd_sph_slip *slip, const double *rho, const double *phi, double *k);
 
 /* Adds w_aj k_j to total [m]: how much drag a velocity of water particle a makes. */
-void sd_sph_grain_load(const sd_sph_around *list, const double *weight, const double *k,
-                       double *total);
+void sd_sph_grain_load(const sd_sph_around *list, const double *k, double *total);
 
 /* D [3n], implicit in time: with u and v at the end of the step but for drag, and R_j = sum_a w_aj
  * slowed_a, slowed_a = total_a/m_a, the rate at which all grains around slow the water at grain j,
  *   D_j = k (u - v) / (1 + dt (k/M + R))
  * which is the drag at the end of the step where all grains around have one slip. M [n]: mass of
  * grains. */
-void sd_sph_grain_drags(const sd_sph_around *list, double dt, const double *weight,
-                        const double *u, const double *v, const double *M, const double *k,
-                        const double *slowed, double *D);
+void sd_sph_grain_drags(const sd_sph_around *list, double dt, const sd_sph_slip *slip,
+                        const double *M, const double *k, const double *slowed, double *D);
 
 /* Takes w_aj F_j from reaction [3m]. */
-void sd_sph_grain_reactions(const sd_sph_around *list, const double *weight, const double *F,
-                            double *reaction);
+void sd_sph_grain_reactions(const sd_sph_around *list, const double *F, double *reaction);
 
 /* Volume of a grain of radius a. */
 double sd_sph_sphere(double a);

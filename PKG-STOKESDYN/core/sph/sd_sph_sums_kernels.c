@@ -17,12 +17,15 @@
 static double all_forces(const sd_sph_model *model, const sd_sph_list *list,
                          const sd_sph_particles *p, int with_rates, double *f4, double *each)
 {
-#define FORCES(scheme)                                                                            \
-  case scheme:                                                                                    \
-    return BY_KERNEL(forces, model, list, p, with_rates, f4, each, 0, scheme)
+#define FORCES(of_scheme)                                                                         \
+  case of_scheme:                                                                                 \
+    return BY_KERNEL(forces, model, list, p, f4, each,                                            \
+                     ((terms){.artvisc = model->artvisc, .tenscorr = model->tenscorr,             \
+                              .rates = with_rates, .friction = model->friction, .scheme = of_scheme}))
+  const terms none = {.friction = SD_SPH_INVISCID, .scheme = SD_SPH_PLAIN};
   const int bare = model->scheme == SD_SPH_PLAIN && !model->artvisc && !model->tenscorr &&
       !model->friction && !with_rates;
-  if (bare) return BY_KERNEL(forces, model, list, p, 0, f4, each, 1, SD_SPH_PLAIN);
+  if (bare) return BY_KERNEL(forces, model, list, p, f4, each, none);
   switch (model->scheme) {
     FORCES(SD_SPH_PLAIN);
     FORCES(SD_SPH_SHIFT);
@@ -36,9 +39,10 @@ static double all_forces(const sd_sph_model *model, const sd_sph_list *list,
 static double all_slopes(const sd_sph_model *model, const sd_sph_both *list,
                          const sd_sph_particles *p, double *f4, double *each)
 {
-  return sd_sph_of_fluids(model)
-      ? BY_KERNEL(slopes, model, list, p, f4, each, SD_SPH_VOLUME_CORRECTION)
-      : BY_KERNEL(slopes, model, list, p, f4, each, SD_SPH_CORRECTION);
+  terms has = {.artvisc = model->artvisc, .friction = model->friction, .scheme = SD_SPH_CORRECTION};
+  if (!sd_sph_of_fluids(model)) return BY_KERNEL(slopes, model, list, p, f4, each, has);
+  has.scheme = SD_SPH_VOLUME_CORRECTION;
+  return BY_KERNEL(slopes, model, list, p, f4, each, has);
 }
 
 static void all_rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,

@@ -161,15 +161,21 @@ static inline double sd_vans_wall_friction(sd_vans_rules rules, double Re, sd_va
 
 /* ---- exchange and solve ---------------------------------------------------------------------- */
 
+/* What the exchange asks of the means over grains */
+typedef struct {
+  const double *profile, *classes;
+  /* [N] force of the drag per volume of mixture, of grains of any sizes; NULL: not known */
+  const double *density;
+} sd_vans_means;
+
 /* Exchange coefficient of every slice, divided by rho (1/s): b = n<f> / (U - v) / rho, in [0, 1/(10
  * dt)].
- *   n<f> = density [N], of grains of any sizes, or, if that is NULL, phi / (4/3 pi a^3) drag or the
- *          sum of that over classes;  b [N] out
+ *   n<f> = density, or, if that is not known, phi / (4/3 pi a^3) drag or the sum of that over classes
+ *   b    [N] out
  *   cut  out: [0] force per area that the limit keeps from the water, [1] all drag
  * Yade's rule: the size of the slip, at least least_slip, and nothing in the lowest slice. */
 void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, double dt,
-                      const double *U, const double *profile, const double *classes,
-                      const double *density, double *b, double cut[2]);
+                      const double *U, const sd_vans_means *grains, double *b, double cut[2]);
 
 /* The largest rate at which the law of drag brings the water of a slice to the speed of its grains,
  * all of the fluid's radius, and the slice. 1/rate is the time that couplings must resolve. */
@@ -181,8 +187,8 @@ double sd_vans_drag_rate(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, c
  * a solve is added to the water as a source:  b [N] out (1/s);  rest [N] out, b (U - v) - n<f>/rho.
  * Together they are the drag to rounding, and close to it while U changes. */
 void sd_vans_exchange_by_law(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
-                             const double *hindrance, const double *profile, const double *classes,
-                             const double *density, double *b, double *rest);
+                             const double *hindrance, const sd_vans_means *grains, double *b,
+                             double *rest);
 
 /* Time steps in a solve of length T with steps of about dt. Consistent: the least number of equal
  * steps no longer than dt (to 1e-9), and dt is made to fit. Yade's rule: dt stays and is added up

@@ -11,30 +11,28 @@ static double sphere(double a)
 /* n<f> of slice n: force per volume of mixture. Without the sum over grains phi / V of a grain
  * times the mean drag on a grain, which is right for grains of one size. */
 static double drag_density(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
-                           const double *profile, const double *classes, const double *density,
-                           int n)
+                           const sd_vans_means *grains, int n)
 {
   const long N = mesh->ncell;
-  if (density) return density[n];
-  if (!classes) return profile[n] / sphere(fluid->radius) * profile[SD_VANS_DRAG * N + n];
+  const double *profile = grains->profile;
+  if (grains->density) return grains->density[n];
+  if (!grains->classes) return profile[n] / sphere(fluid->radius) * profile[SD_VANS_DRAG * N + n];
   double sum = 0.0;
   for (int c = 0; c < fluid->nclass; c++) {
-    const double *of_class = classes + c * SD_VANS_ROWS * N;
+    const double *of_class = grains->classes + c * SD_VANS_ROWS * N;
     sum += of_class[n] / sphere(fluid->class_radius[c]) * of_class[SD_VANS_DRAG * N + n];
   }
   return sum;
 }
 
 void sd_vans_exchange(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, double dt,
-                      const double *U, const double *profile, const double *classes,
-                      const double *density, double *b, double cut[2])
+                      const double *U, const sd_vans_means *grains, double *b, double cut[2])
 {
   const int N = mesh->ncell;
-  const double *vx = profile + (long) SD_VANS_VX * N, cap = 0.1 / dt;
+  const double *vx = grains->profile + (long) SD_VANS_VX * N, cap = 0.1 / dt;
   cut[0] = cut[1] = 0.0;
   for (int n = 0; n < N; n++) {
-    const double drag = drag_density(mesh, fluid, profile, classes, density, n),
-                 slip = U[n + 1] - vx[n];
+    const double drag = drag_density(mesh, fluid, grains, n), slip = U[n + 1] - vx[n];
     /* drag against the slip, or none: b would drive the water away from the grains. At most a tenth
      * of the slip goes in one step. */
     const double value = fluid->rules == SD_VANS_YADE
@@ -74,10 +72,11 @@ double sd_vans_drag_rate(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, c
 }
 
 void sd_vans_exchange_by_law(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
-                             const double *hindrance, const double *profile, const double *classes,
-                             const double *density, double *b, double *rest)
+                             const double *hindrance, const sd_vans_means *grains, double *b,
+                             double *rest)
 {
   const long N = mesh->ncell;
+  const double *profile = grains->profile, *classes = grains->classes;
   const double *vx = profile + SD_VANS_VX * N;
   for (int n = 0; n < N; n++) {
     const double slip = U[n + 1] - vx[n];
@@ -86,6 +85,6 @@ void sd_vans_exchange_by_law(const sd_vans_mesh *mesh, const sd_vans_fluid *flui
       const double phi = classes[c * SD_VANS_ROWS * N + n];
       b[n] += rate_of(fluid, fluid->class_radius[c], phi, slip, hindrance[n]);
     }
-    rest[n] = b[n] * slip - drag_density(mesh, fluid, profile, classes, density, n) / fluid->rho;
+    rest[n] = b[n] * slip - drag_density(mesh, fluid, grains, n) / fluid->rho;
   }
 }

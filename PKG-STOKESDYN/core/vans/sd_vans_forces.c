@@ -3,34 +3,31 @@
 #include <math.h>
 
 /* Drag on grain i slice by slice. What lies outside the mesh sees the values of its ends. */
-static void drag_by_volume(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
-                           const double *hindrance, const sd_vans_grains *grains, int i,
-                           double F[3])
+static void drag_by_volume(const sd_vans_ambient *stream, const sd_vans_grains *grains, int i, double F[3])
 {
+  const sd_vans_mesh *mesh = stream->mesh;
   const double a = grains->a[i], z = grains->x[3 * (long) i + 2], whole = 2.0 * primitive(a * a, a);
   sd_vans_part part = sd_vans_lowest_part(mesh, z, a);
   while (sd_vans_next_part(mesh, a, &part))
-    sd_vans_add_drag(law, grains, i, sd_vans_water_in(mesh, law, U, hindrance, part.n),
-                     part.V / whole, F);
+    sd_vans_add_drag(stream->law, grains, i, sd_vans_water_in(stream, part.n), part.V / whole, F);
 }
 
 /* Drag on grain i, centre in slice p. */
-static void drag_on(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
-                    const double *hindrance, const sd_vans_grains *grains, int i, int p,
-                    double F[3])
+static void drag_on(const sd_vans_ambient *stream, const sd_vans_grains *grains, int i, int p, double F[3])
 {
   F[0] = F[1] = F[2] = 0.0;
-  if (law->felt_by_volume)
-    drag_by_volume(mesh, law, U, hindrance, grains, i, F);
+  if (stream->law->felt_by_volume)
+    drag_by_volume(stream, grains, i, F);
   else
-    sd_vans_add_drag(law, grains, i, sd_vans_water_in(mesh, law, U, hindrance, p), 1.0, F);
+    sd_vans_add_drag(stream->law, grains, i, sd_vans_water_in(stream, p), 1.0, F);
 }
 
 /* Shear lift: dynamic pressure over the grain less that under it, with the water one radius above
  * and below its centre; nothing where one of the two is outside the water. */
-static double lift_force(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
-                         int p, double a, double vx)
+static double lift_force(const sd_vans_ambient *stream, int p, double a, double vx)
 {
+  const sd_vans_mesh *mesh = stream->mesh;
+  const sd_vans_force_law *law = stream->law;
   int upper, lower;
   /* a radius of a whole number of slices must not fall short of it by rounding */
   const double reach = law->rules == SD_VANS_YADE ? a : a * (1.0 + 1e-9);
@@ -44,14 +41,14 @@ static double lift_force(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
     lower = sd_vans_slice_of(mesh, mesh->z_ref + mesh->edge[p + 1] - reach);
   }
   if (upper >= mesh->ncell || lower <= 0) return 0.0;
-  const double over = U[upper + 1] - vx, under = U[lower + 1] - vx;
+  const double over = stream->U[upper + 1] - vx, under = stream->U[lower + 1] - vx;
   return 0.5 * law->rho * SD_PI * a * a * law->lift * (over * over - under * under);
 }
 
-int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
-                   const double *hindrance, const sd_vans_grains *grains, double *F,
-                   double *drag_x)
+int sd_vans_forces(const sd_vans_ambient *stream, const sd_vans_grains *grains, double *F, double *drag_x)
 {
+  const sd_vans_mesh *mesh = stream->mesh;
+  const sd_vans_force_law *law = stream->law;
   const unsigned char *take = grains->take;
   /* In a steady stream down a slope the pressure falls straight away from the bed: what gravity has
    * along x is carried by the stress, and grains have no buoyancy that way. */
@@ -68,7 +65,7 @@ int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const
     if (!inside && law->rules == SD_VANS_YADE) continue;
     const double a = grains->a[i], displaced = 4.0 / 3.0 * SD_PI * a * a * a * law->rho,
                  share = grains->weight ? grains->weight[i] : 1.0;
-    drag_on(mesh, law, U, hindrance, grains, i, p, Fi);
+    drag_on(stream, grains, i, p, Fi);
     if (grains->acceleration)
       for (int d = 0; d < 3; d++)
         Fi[d] -= law->added_mass * displaced * grains->acceleration[3 * (long) i + d];
@@ -76,22 +73,22 @@ int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const
     for (int d = 0; d < 3; d++) Fi[d] -= displaced * g[d];
     Fi[0] -= displaced / law->rho * law->dpdx;
     if (inside && law->lift != 0.0)
-      Fi[2] += lift_force(mesh, law, U, p, a, grains->v[3 * (long) i]);
+      Fi[2] += lift_force(stream, p, a, grains->v[3 * (long) i]);
     if (inside && law->convective) Fi[0] -= law->convective[p];
     for (int d = 0; d < 3; d++) Fi[d] *= share;
   }
   return outside;
 }
 
-double sd_vans_stiffest(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
-                        const double *hindrance, const sd_vans_grains *grains, const double *mass,
+double sd_vans_stiffest(const sd_vans_ambient *stream, const sd_vans_grains *grains, const double *mass,
                         int *stiffest)
 {
+  const sd_vans_force_law *law = stream->law;
   double largest = 0.0;
   for (int i = 0; i < grains->n; i++) {
     if (grains->take && !grains->take[i]) continue;
-    const int p = sd_vans_slice_of(mesh, grains->x[3 * (long) i + 2]);
-    const sd_vans_water water = sd_vans_water_in(mesh, law, U, hindrance, p);
+    const int p = sd_vans_slice_of(stream->mesh, grains->x[3 * (long) i + 2]);
+    const sd_vans_water water = sd_vans_water_in(stream, p);
     double w[3];
     const double speed = velocity_past(grains, i, water, w),
                  share = grains->weight ? grains->weight[i] : 1.0;

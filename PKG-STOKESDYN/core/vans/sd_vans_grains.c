@@ -44,19 +44,20 @@ static void add_slices(double *sums, int first, int count, const double *V, cons
 
 /* Drag on grain i along x (and z), were all of it in the slice: in each that it reaches, or, if it
  * feels the water at its centre, of that slice p in all of them. */
-static void drag_of_slices(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
-                           const double *hindrance, const sd_vans_grains *grains, int i,
+static void drag_of_slices(const sd_vans_ambient *stream, const sd_vans_grains *grains, int i,
                            const int slices[2], double *along_x, double *along_z)
 {
+  const sd_vans_mesh *mesh = stream->mesh;
+  const sd_vans_force_law *law = stream->law;
   const int p = sd_vans_slice_of(mesh, grains->x[3 * (long) i + 2]);
   const int inside = p >= 0 && p < mesh->ncell;
   double F[3] = {0.0, 0.0, 0.0};
   if (!law->felt_by_volume && inside)
-    sd_vans_add_drag(law, grains, i, sd_vans_water_in(mesh, law, U, hindrance, p), 1.0, F);
+    sd_vans_add_drag(law, grains, i, sd_vans_water_in(stream, p), 1.0, F);
   for (int k = 0, n = slices[0]; k < slices[1]; k++, n++) {
     if (law->felt_by_volume) {
       F[0] = F[1] = F[2] = 0.0;
-      sd_vans_add_drag(law, grains, i, sd_vans_water_in(mesh, law, U, hindrance, n), 1.0, F);
+      sd_vans_add_drag(law, grains, i, sd_vans_water_in(stream, n), 1.0, F);
     }
     along_x[k] = F[0];
     if (along_z) along_z[k] = F[2];
@@ -75,10 +76,11 @@ static void add_density(double *density, int N, double a, int first, int count, 
   }
 }
 
-int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
-                    const sd_vans_averaging *how, const double *U, const double *hindrance,
+int sd_vans_average(const sd_vans_ambient *stream, const sd_vans_averaging *how,
                     const sd_vans_grains *grains, double *sums, double *scratch)
 {
+  const sd_vans_mesh *mesh = stream->mesh;
+  const sd_vans_force_law *law = stream->law;
   const int N = mesh->ncell;
   double *V = scratch, *drag = scratch + N, *upward = how->density ? scratch + 2 * N : 0;
   for (int i = 0; i < grains->n; i++) {
@@ -90,7 +92,7 @@ int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
     /* a share of the sphere is that share of each of its slices */
     if (grains->weight)
       for (int k = 0; k < count; k++) V[k] *= grains->weight[i];
-    drag_of_slices(mesh, law, U, hindrance, grains, i, slices, drag, upward);
+    drag_of_slices(stream, grains, i, slices, drag, upward);
     add_slices(sums, first, count, V, v, drag);
     if (how->density) add_density(how->density, N, a, first, count, V, drag, upward);
     if (how->nclass == 0) continue;

@@ -91,23 +91,26 @@ typedef struct {
   double flux;
 } sd_vans_force_law;
 
+/* The stream as grains feel it: U [N+1] velocity of the water, hindrance [N] of sd_hindrance_of */
+typedef struct {
+  const sd_vans_mesh *mesh;
+  const sd_vans_force_law *law;
+  const double *U, *hindrance;
+} sd_vans_ambient;
+
 /* Force of the stream on the grains that take part, 0 on the others. Of members that overlap each
  * has its share of all of it, so that the buoyancy of a clump is that of its union.
- *   hindrance  [N] of sd_hindrance_of
  *   F       [n][3] out: drag, added mass, buoyancy, pressure gradient, lift, convective
  *   drag_x  [n] out or NULL: the part that the water takes back, drag and added mass along x
  * Returns the number of spheres with their centre outside the mesh. They feel the top (or bottom)
  * values: above U[N] and the phi of the last slice, below U[0] = 0 and the phi of the first. Yade's
  * rule: no force at all. */
-int sd_vans_forces(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
-                   const double *hindrance, const sd_vans_grains *grains, double *F,
-                   double *drag_x);
+int sd_vans_forces(const sd_vans_ambient *stream, const sd_vans_grains *grains, double *F, double *drag_x);
 
 /* The largest rate at which drag takes the velocity of a grain to that of the water, dF/dw/m over
  * the grains that take part, and which grain: a step of velocity Verlet must be shorter than
  * 2/rate. mass [n]. 0 if there is none. */
-double sd_vans_stiffest(const sd_vans_mesh *mesh, const sd_vans_force_law *law, const double *U,
-                        const double *hindrance, const sd_vans_grains *grains, const double *mass,
+double sd_vans_stiffest(const sd_vans_ambient *stream, const sd_vans_grains *grains, const double *mass,
                         int *stiffest);
 
 /* Rows of a profile; in sums over grains the first is the volume, the others are volume times (vx,
@@ -147,13 +150,12 @@ void sd_vans_class_means(int nclass, const double *limit, const double *sums, do
                          double *volume);
 
 /* Adds grains to the sums [1 + nclass][N][ROWS]: of all, then of each class. The drag is that of
- * the law with hindrance (from the phi before this call) and U, 0 for a grain with its centre
+ * the law, with the hindrance of the phi before this call, 0 for a grain with its centre
  * outside the mesh; with felt_by_volume in every slice that of the slip there. scratch [2 N], or
  * [3 N] with density.
  * Returns -1, or the index of the first sphere that belongs to no class.
  * Yade's rule: mirrored slices; the velocities of a class all in the slice of the centre. */
-int sd_vans_average(const sd_vans_mesh *mesh, const sd_vans_force_law *law,
-                    const sd_vans_averaging *how, const double *U, const double *hindrance,
+int sd_vans_average(const sd_vans_ambient *stream, const sd_vans_averaging *how,
                     const sd_vans_grains *grains, double *sums, double *scratch);
 
 /* A profile from its sums [N][ROWS]: phi = V / (area * height of the slice), the others divided by

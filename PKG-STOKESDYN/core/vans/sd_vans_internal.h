@@ -52,13 +52,13 @@ static inline double speed_of(const double w[3])
 }
 
 /* Of slice n; n < 0: below the mesh, n >= N: above it. */
-static inline sd_vans_water sd_vans_water_in(const sd_vans_mesh *mesh,
-                                             const sd_vans_force_law *law, const double *U,
-                                             const double *hindrance, int n)
+static inline sd_vans_water sd_vans_water_in(const sd_vans_ambient *stream, int n)
 {
+  const sd_vans_mesh *mesh = stream->mesh;
+  const sd_vans_force_law *law = stream->law;
   const int N = mesh->ncell, seen = n < 0 ? 0 : n < N ? n : N - 1;
   const double upward = !law->upward ? 0.0 : n >= 0 && n < N ? law->upward[n] : law->flux;
-  return (sd_vans_water){n < 0 ? U[0] : U[seen + 1], upward, hindrance[seen]};
+  return (sd_vans_water){stream->U[n < 0 ? 0 : seen + 1], upward, stream->hindrance[seen]};
 }
 
 /* Velocity past grain i, size of it out. */

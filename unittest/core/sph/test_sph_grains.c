@@ -11,6 +11,7 @@ static int wall[WATER], first[GRAINS + 1];
 static int *particle;
 static double *weight, wet[GRAINS], h = 1.1;
 static sd_sph_around list;
+static const sd_sph_grains grains = {NULL, V, wet};
 
 static int set_up(void **state)
 {
@@ -34,8 +35,8 @@ static int set_up(void **state)
   weight = malloc(sizeof(double) * (size_t) first[GRAINS]);
   sd_sph_look_around(&cells, points, GRAINS, x, 2.0 * h, first, particle);
   sd_cells_free(&cells);
-  list = (sd_sph_around){GRAINS, first, particle};
-  sd_sph_grain_weights(SD_SPH_WENDLAND, h, &list, x, points, volume, wall, weight, wet);
+  list = (sd_sph_around){GRAINS, first, particle, weight};
+  sd_sph_grain_weights(SD_SPH_WENDLAND, h, &list, x, &(sd_sph_points){points, volume, wall}, wet);
   return 0;
 }
 
@@ -65,7 +66,7 @@ static void no_volume_is_lost(void **state)
 {
   (void) state;
   double phi[WATER] = {0.0}, in_water = 0.0, of_grains = 0.0;
-  sd_sph_grain_fractions(&list, V, volume, weight, wet, phi);
+  sd_sph_grain_fractions(&list, &grains, volume, phi);
   for (int a = 0; a < WATER; a++) in_water += volume[a] * phi[a];
   for (int j = 0; j < GRAINS; j++) {
     of_grains += wet[j] * V[j];
@@ -89,10 +90,10 @@ static void forces_work_on_the_flux(void **state)
     per_volume[k] = f[k] / volume[k / 3];
   }
   for (int k = 0; k < 3 * GRAINS; k++) U[k] = uniform(&seed, -1.0, 5.0);
-  sd_sph_grain_vector_means(&list, weight, per_volume, mean);
-  sd_sph_grain_stresses(GRAINS, mean, wet, V, T);
-  sd_sph_grain_fractions(&list, V, volume, weight, wet, phi);
-  sd_sph_grain_flux(&list, V, volume, weight, wet, U, q);
+  sd_sph_grain_vector_means(&list, per_volume, mean);
+  sd_sph_grain_stresses(GRAINS, &grains, mean, T);
+  sd_sph_grain_fractions(&list, &grains, volume, phi);
+  sd_sph_grain_flux(&list, &grains, volume, U, q);
   for (int k = 0; k < 3 * WATER; k++) {
     const double eps = 1.0 - phi[k / 3];
     q[k] += eps * v[k];
@@ -119,12 +120,12 @@ static void means_and_reactions_are_adjoint(void **state)
   double work_of_grains = 0.0, work_of_water = 0.0, sum[2][3] = {{0.0}};
   for (int k = 0; k < 3 * GRAINS; k++) F[k] = uniform(&seed, -2.0, 3.0);
   for (int k = 0; k < 3 * WATER; k++) u[k] = uniform(&seed, -1.0, 4.0);
-  sd_sph_grain_vector_means(&list, weight, u, mean);
+  sd_sph_grain_vector_means(&list, u, mean);
   double up[WATER], mean_up[GRAINS];
   for (int i = 0; i < WATER; i++) up[i] = u[3 * i + 2];
-  sd_sph_grain_means(&list, weight, up, mean_up);
+  sd_sph_grain_means(&list, up, mean_up);
   for (int j = 0; j < GRAINS; j++) CHECK_NEAR(mean_up[j], mean[3 * j + 2], 1e-15);
-  sd_sph_grain_reactions(&list, weight, F, reaction);
+  sd_sph_grain_reactions(&list, F, reaction);
   for (int k = 0; k < 3 * GRAINS; k++) {
     work_of_grains += F[k] * mean[k];
     sum[0][k % 3] += F[k];
@@ -203,12 +204,14 @@ static void drag_is_that_of_the_law(void **state)
                             {SD_DRAG_BROWN_LAWLER, SD_HINDRANCE_RICHARDSON_ZAKI, 0.0},
                             0.0,
                             NULL};
+    const sd_sph_grains grain = {&a, NULL, &one};
+    const sd_sph_slip slipping = {u, v};
     double k;
-    sd_sph_grain_drag(&law, 1, &a, u, v, &rho, &some, &one, &k);
+    sd_sph_grain_drag(&law, 1, &grain, &slipping, &rho, &some, &k);
     const double right = sd_drag_factor(law.drag, rho, eta, a, 0.7, speed);
     CHECK_NEAR(k, 0.7 * right, 1e-12 * right);
     law.wake = &wake;
-    sd_sph_grain_drag(&law, 1, &a, u, v, &rho, &none, &one, &k);
+    sd_sph_grain_drag(&law, 1, &grain, &slipping, &rho, &none, &k);
     const double D = k * speed,
                  slip = speed +
         D *
@@ -237,11 +240,11 @@ static void stiff_drag_takes_energy(void **state)
   }
   for (int n = 0; n < 3 * GRAINS; n++) v[n] = uniform(&seed, -1.0, 2.0);
   for (int n = 0; n < 3 * WATER; n++) U[n] = uniform(&seed, -1.0, 1.0);
-  sd_sph_grain_load(&list, weight, k, total);
+  sd_sph_grain_load(&list, k, total);
   for (int a = 0; a < WATER; a++) total[a] /= volume[a];
-  sd_sph_grain_vector_means(&list, weight, U, u);
-  sd_sph_grain_drags(&list, dt, weight, u, v, M, k, total, D);
-  sd_sph_grain_reactions(&list, weight, D, change);
+  sd_sph_grain_vector_means(&list, U, u);
+  sd_sph_grain_drags(&list, dt, &(sd_sph_slip){u, v}, M, k, total, D);
+  sd_sph_grain_reactions(&list, D, change);
   double possible = 0.0;
   for (int n = 0; n < 3 * GRAINS; n++) {
     possible += 0.5 * dt * D[n] * (u[n] - v[n]);

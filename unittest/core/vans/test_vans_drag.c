@@ -145,9 +145,10 @@ static void a_pressure_gradient_pushes_grains(void **state)
   sd_vans_force_law law = {.rho = RHO, .eta = ETA, .g = {0.2, 0, -G}, .rest = 1};
   const sd_vans_grains grains = {.n = 1, .x = x, .v = v, .a = &a, .weight = &weight};
   double without[3], with[3], drag[2];
-  sd_vans_forces(&mesh, &law, U, hindrance, &grains, without, drag);
+  const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
+  sd_vans_forces(&stream, &grains, without, drag);
   law.dpdx = -37.0;
-  sd_vans_forces(&mesh, &law, U, hindrance, &grains, with, drag + 1);
+  sd_vans_forces(&stream, &grains, with, drag + 1);
   assert_true(fabs((with[0] - without[0]) / (0.7 * 4.0 / 3.0 * SD_PI * a * a * a * 37.0) - 1.0) < 1e-13);
   assert_true(with[1] == without[1] && with[2] == without[2] && drag[0] == drag[1]);
 }
@@ -191,9 +192,9 @@ static void members_push_by_their_share(void **state)
   const sd_vans_mesh mesh = {2, 0, 1, edge};
   const sd_vans_force_law law = {.rho = RHO, .eta = ETA, .g = {0, 0, -G}};
   double one[3], both[6], drag[2];
-  sd_vans_forces(&mesh, &law, U, hindrance, &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = a}, one, NULL);
-  sd_vans_forces(&mesh, &law, U, hindrance,
-                 &(sd_vans_grains){.n = 2, .x = x, .v = v, .a = a, .weight = weight}, both, drag);
+  const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
+  sd_vans_forces(&stream, &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = a}, one, NULL);
+  sd_vans_forces(&stream, &(sd_vans_grains){.n = 2, .x = x, .v = v, .a = a, .weight = weight}, both, drag);
   for (int d = 0; d < 3; d++) assert_true(both[d] + both[3 + d] == one[d]);
   assert_true(drag[0] + drag[1] == one[0] && one[2] > 0.0);
 }
@@ -224,9 +225,10 @@ static void rising_water_lifts_a_grain(void **state)
   const sd_vans_mesh mesh = {2, 0, 1, edge};
   sd_vans_force_law law = {.rho = RHO, .eta = ETA, .upward = up, .flux = 0.3};
   double rising[3], fallen[3];
-  sd_vans_forces(&mesh, &law, U, hindrance, &(sd_vans_grains){.n = 1, .x = x, .v = still, .a = &a}, rising, NULL);
+  const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
+  sd_vans_forces(&stream, &(sd_vans_grains){.n = 1, .x = x, .v = still, .a = &a}, rising, NULL);
   law.upward = NULL;
-  sd_vans_forces(&mesh, &law, U, hindrance, &(sd_vans_grains){.n = 1, .x = x, .v = falling, .a = &a}, fallen, NULL);
+  sd_vans_forces(&stream, &(sd_vans_grains){.n = 1, .x = x, .v = falling, .a = &a}, fallen, NULL);
   assert_true(rising[2] > 0.0 && fabs(rising[2] / fallen[2] - 1.0) < 1e-15);
 }
 

@@ -18,13 +18,13 @@ static void exchange_coefficient(void **state)
   sd_vans_fluid fluid = {.rho = 1000, .eta = 1e-3, .radius = 0.003, .least_slip = 1e-5};
   const double n = 0.3 / (4.0 / 3.0 * SD_PI * 27e-9);
   double b[N], cut[2];
-  sd_vans_exchange(&mesh, &fluid, 1e-2, U, profile, NULL, NULL, b, cut);
+  sd_vans_exchange(&mesh, &fluid, 1e-2, U, &(sd_vans_means){profile, NULL, NULL}, b, cut);
   assert_true(fabs(b[0] / (n * 2e-5 / 0.3 / 1000) - 1) < 1e-14 &&
               fabs(b[1] / (n * 3e-5 / 0.4 / 1000) - 1) < 1e-14 && b[2] == 10.0 && b[3] == 0.0);
   assert_true(fabs(cut[1] / (n * 8e-5) - 1) < 1e-14 &&
               fabs(cut[0] / (n * 3e-5 - 1000 * 10.0 * 0.001) - 1) < 1e-12);
   fluid.rules = SD_VANS_YADE;
-  sd_vans_exchange(&mesh, &fluid, 1e-2, U, profile, NULL, NULL, b, cut);
+  sd_vans_exchange(&mesh, &fluid, 1e-2, U, &(sd_vans_means){profile, NULL, NULL}, b, cut);
   assert_true(b[0] == 0.0 && b[1] == 0.0 && b[2] == 10.0);
 }
 
@@ -40,7 +40,7 @@ static void exchange_knows_no_unit(void **state)
     const sd_vans_mesh mesh = {2, 0, L, edge};
     const sd_vans_fluid fluid = {.rho = 1000 * M / L / L / L, .radius = 0.003 * L};
     double each[2], cut[2];
-    sd_vans_exchange(&mesh, &fluid, 1e-6 * T, U, profile, NULL, NULL, each, cut);
+    sd_vans_exchange(&mesh, &fluid, 1e-6 * T, U, &(sd_vans_means){profile, NULL, NULL}, each, cut);
     b[k] = each[0] * T;
   }
   assert_true(b[0] > 0.0 && fabs(b[1] / b[0] - 1) < 1e-6);
@@ -84,7 +84,7 @@ static void exchange_by_law_takes_the_drag_as_it_is(void **state)
       classes[(c * SD_VANS_ROWS + SD_VANS_DRAG) * N + n] = drag[n];
     }
   }
-  sd_vans_exchange_by_law(&mesh, &fluid, U, hindrance, profile, NULL, NULL, b, rest);
+  sd_vans_exchange_by_law(&mesh, &fluid, U, hindrance, &(sd_vans_means){profile, NULL, NULL}, b, rest);
   for (int n = 0; n < N; n++) {
     const double slip = U[n + 1] - profile[N + n], w[3] = {slip, 0, 0}, V = 4.0 / 3.0 * SD_PI * a * a * a;
     double F[3];
@@ -93,7 +93,7 @@ static void exchange_by_law_takes_the_drag_as_it_is(void **state)
     assert_true(fabs(b[n] * slip - rest[n] - profile[n] / V * drag[n] / fluid.rho) < 1e-13);
   }
   fluid.nclass = 2;
-  sd_vans_exchange_by_law(&mesh, &fluid, U, hindrance, profile, classes, NULL, of_classes, rest);
+  sd_vans_exchange_by_law(&mesh, &fluid, U, hindrance, &(sd_vans_means){profile, classes, NULL}, of_classes, rest);
   for (int n = 0; n < N; n++) assert_true(fabs(of_classes[n] - b[n]) <= 1e-14 * b[n]);
 }
 

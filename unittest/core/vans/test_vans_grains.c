@@ -102,9 +102,9 @@ static void point_grains_stay_in_one_slice(void **state)
   const sd_vans_force_law law = {.rho = 1.2, .eta = 0.3, .exponent = 3.1};
   const sd_vans_averaging how = {1, 0, NULL, NULL, NULL};
   const double x[6] = {0, 0, 1.7, 0, 0, 9.0}, v[6] = {0.3, -0.2, 0.5, 1, 1, 1}, a[2] = {0.9, 0.9};
+  const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
   assert_int_equal(
-      sd_vans_average(&mesh, &law, &how, U, hindrance,
-                      &(sd_vans_grains){.n = 2, .x = x, .v = v, .a = a}, sums, V),
+      sd_vans_average(&stream, &how, &(sd_vans_grains){.n = 2, .x = x, .v = v, .a = a}, sums, V),
       -1);
   sd_vans_profiles(&mesh, 11.0, sums, profile);
   for (int n = 0; n < N; n++)
@@ -125,8 +125,8 @@ static void drag_balances_weight_at_terminal_velocity(void **state)
   const sd_vans_force_law law = {.rho = rho, .eta = eta, .exponent = 3.1, .g = {0, 0, -g}};
   const double U[3] = {0, 0, 0}, hindrance[2] = {1, 1}, x[3] = {0, 0, 0.5}, v[3] = {0, 0, -w};
   double F[3];
-  assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance,
-                 &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = &a}, F, NULL), 0);
+  const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
+  assert_int_equal(sd_vans_forces(&stream, &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = &a}, F, NULL), 0);
   const double weight = 4.0 / 3.0 * SD_PI * a * a * a * rho_s * g;
   assert_true(fabs(F[2] - weight) < 1e-13 * weight);
 }
@@ -158,8 +158,8 @@ static void lift_sees_both_ends_of_the_grain(void **state)
     const double a = radii[k / 2];
     const int slices = 2 + k / 2;
     double F[3];
-    sd_vans_forces(&mesh, &law, U, hindrance,
-                 &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = &a}, F, NULL);
+    const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
+    sd_vans_forces(&stream, &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = &a}, F, NULL);
     const double over = U[5 + 1 + slices] - 0.4, under = U[5 + 1 - slices] - 0.4;
     assert_true(fabs(F[2] - 0.5 * 1.3 * SD_PI * a * a * 0.27 * (over * over - under * under)) < 1e-13);
   }
@@ -174,8 +174,8 @@ static void convective_force_is_taken_off(void **state)
                v[3] = {0}, a = 0.2;
   const sd_vans_force_law law = {.rho = 1.3, .eta = 0.1, .convective = convective};
   double F[3];
-  sd_vans_forces(&mesh, &law, U, hindrance,
-                 &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = &a}, F, NULL);
+  const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
+  sd_vans_forces(&stream, &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = &a}, F, NULL);
   assert_true(F[0] == -0.7);
 }
 
@@ -191,14 +191,15 @@ static void grains_outside_feel_the_end_values(void **state)
   const sd_vans_grains grains = {.n = 2, .x = x, .v = v, .a = a};
   sd_vans_force_law law = {.rho = 1.3, .eta = 0.1, .g = {0, 0, -2}};
   double F[6], expected[3];
-  assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance, &grains, F, NULL), 2);
+  const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
+  assert_int_equal(sd_vans_forces(&stream, &grains, F, NULL), 2);
   yade_drag(1.3, 0.1, 0.2, 1.5, (double[3]){0.8, 0, 0}, expected);
   assert_true(fabs(F[0] - expected[0]) < 1e-15 &&
               fabs(F[2] - 4.0 / 3.0 * SD_PI * 0.008 * 2.6) < 1e-15);
   yade_drag(1.3, 0.1, 0.2, 3.0, (double[3]){-0.1, 0, 0}, expected);
   assert_true(fabs(F[3] - expected[0]) < 1e-15);
   law.rules = SD_VANS_YADE;
-  assert_int_equal(sd_vans_forces(&mesh, &law, U, hindrance, &grains, F, NULL), 2);
+  assert_int_equal(sd_vans_forces(&stream, &grains, F, NULL), 2);
   for (int k = 0; k < 6; k++) assert_true(F[k] == 0.0);
 }
 
@@ -248,8 +249,9 @@ static void a_slice_gives_what_its_grain_gets(void **state)
       double U[N + 1], F[3], drag, sums[N * SD_VANS_ROWS] = {0}, whole_drag[3];
       for (int n = 0; n <= N; n++) U[n] = v[0];
       U[moves + 1] += 0.2;
-      sd_vans_forces(&mesh, &law, U, hindrance, &grain, F, &drag);
-      sd_vans_average(&mesh, &law, &how, U, hindrance, &grain, sums, scratch);
+      const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
+      sd_vans_forces(&stream, &grain, F, &drag);
+      sd_vans_average(&stream, &how, &grain, sums, scratch);
       yade_drag(law.rho, law.eta, a, hindrance[moves], (double[3]){0.2, 0, 0}, whole_drag);
       const int reached = moves >= first && moves < first + count;
       const double expected = reached ? V[moves - first] / whole * whole_drag[0] : 0.0;
@@ -286,7 +288,8 @@ static void drag_by_volume_converges(void **state)
         const double z = 0.02 + 0.003 * k / 60.0, x[3] = {0, 0, z}, v[3] = {0};
         const sd_vans_grains grain = {1, x, v, &a, NULL, NULL, NULL, NULL};
         double F[3];
-        sd_vans_forces(&mesh, &law, U, hindrance, &grain, F, NULL);
+        const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
+        sd_vans_forces(&stream, &grain, F, NULL);
         const double exact = 0.5 * SD_PI * a * 12.2 * law.eta * c * (z * z + 0.2 * a * a);
         largest = fmax(largest, fabs(F[0] / exact - 1.0));
       }

@@ -49,8 +49,9 @@ static void check_forces(const char *name, sd_vans_rules rules)
   vectors(t, "fx", "fy", "fz", n, reference);
   hindrance_of(mesh.ncell, vans_column(p, "phi"), law.exponent, hindrance);
   const sd_vans_grains grains = {n, x, v, vans_column(t, "radius"), u, NULL, NULL, NULL};
+  const sd_vans_ambient stream = {&mesh, &law, vans_column(p, "vxFluid"), hindrance};
   const int outside =
-      sd_vans_forces(&mesh, &law, vans_column(p, "vxFluid"), hindrance, &grains, F, NULL);
+      sd_vans_forces(&stream, &grains, F, NULL);
   assert_int_equal(outside, 8);
   /* Yade forgets the grains outside the mesh, which is what the table has; the consistent rule moves and lifts them. */
   if (rules == SD_VANS_CONSISTENT)
@@ -106,8 +107,8 @@ static void check_averages(const char *name, int classes, sd_vans_rules rules)
   for (int call = 1; call <= 2; call++) {
     double sums[3 * N_MAX * SD_VANS_ROWS] = {0};
     hindrance_of(N, phi, law.exponent, hindrance);
-    assert_int_equal(sd_vans_average(&mesh, &law, &how, vans_column(p, "vxFluid"), hindrance,
-                                     &grains, sums, V),
+    const sd_vans_ambient stream = {&mesh, &law, vans_column(p, "vxFluid"), hindrance};
+    assert_int_equal(sd_vans_average(&stream, &how, &grains, sums, V),
                      -1);
     for (int c = -1; c < classes; c++) {
       sd_vans_profiles(&mesh, vans_key(t, "vCell", 0) / mesh.dz,
@@ -187,7 +188,7 @@ static void check_fluid(const char *name, sd_vans_rules rules)
   memcpy(profile, phi, N * sizeof(double));
   memcpy(profile + SD_VANS_VX * N, vx, N * sizeof(double));
   memcpy(profile + SD_VANS_DRAG * N, vans_column(t, "drag"), N * sizeof(double));
-  sd_vans_exchange(&mesh, &fluid, dt, U, profile, NULL, NULL, b, cut);
+  sd_vans_exchange(&mesh, &fluid, dt, U, &(sd_vans_means){profile, NULL, NULL}, b, cut);
   sd_vans_mixing_length(&mesh, &fluid, U, phi, fluid.nclass ? classes : NULL, phi, length, scratch);
   sd_vans_solver *solver = sd_vans_solver_create(&mesh);
   const sd_vans_column column = {phi, vx, b, length, NULL};

@@ -87,7 +87,8 @@ static void bins_add_up_to_all_grains(void **state)
   for (int n = 0; n <= N; n++) U[n] = 0.02 * n;
   sd_hindrance_of(law.drag, N, c->phi, law.exponent, hindrance);
   const sd_vans_averaging how = {.nclass = BINS, .class_limit = limit};
-  assert_int_equal(sd_vans_average(&c->mesh, &law, &how, U, hindrance, &grains, sums, scratch), -1);
+  const sd_vans_ambient stream = {&c->mesh, &law, U, hindrance};
+  assert_int_equal(sd_vans_average(&stream, &how, &grains, sums, scratch), -1);
   for (int k = 0; k < N * SD_VANS_ROWS; k++) {
     double of_bins = 0.0, size = 0.0;
     for (int b = 0; b < BINS; b++) {

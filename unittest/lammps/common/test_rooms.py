@@ -1,5 +1,6 @@
 """The rooms of the house: what a model may include, as its include path has it. The build tells it in
 compile_commands.json."""
+import ast
 import json
 import os
 import pathlib
@@ -77,6 +78,44 @@ def test_a_name_of_a_function_stands_in_one_file():
                 found.setdefault(name, set()).add(path.name)
     assert len(found) > 900
     assert {name: files for name, files in found.items() if len(files) > 1} == {}
+
+
+def parameters(listed):
+    """Of a list between brackets; commas of types and nested brackets do not count."""
+    while (plain := re.sub(r"<[^<>]*>|\([^()]*\)|\{[^{}]*\}", "", listed)) != listed:
+        listed = plain
+    return listed.count(",") + 1
+
+
+def test_functions_have_at_most_eight_parameters():
+    """More of them are a struct that has no name yet. Two functions stand in for those of LAPACK and MPI."""
+    function = re.compile(r"^(?:\w[\w\s*&:<>,]*?)?([\w:~]+)\(((?:[^(){};]|\([^(){};]*\))*)\)[^;{}()]*\{", re.M)
+    found = {}
+    for room in ("PKG-STOKESDYN", "unittest"):
+        for path in (TOP / room).rglob("*"):
+            if path.suffix not in (".c", ".h", ".cpp"):
+                continue
+            text = re.sub(r"/\*.*?\*/|//[^\n]*", "", path.read_text(), flags=re.S)
+            for name, listed in function.findall(text):
+                found[name] = max(parameters(listed), found.get(name, 0))
+    assert len(found) > 3000
+    assert {name for name, count in found.items() if count > 8} == {"dpotrs_", "MPI_Alltoallv"}
+
+
+def long_functions(path):
+    """Names of those with more than 60 lines in braces (C, C++) or below their first line (Python)"""
+    text = path.read_text()
+    if path.suffix == ".py":
+        return [node.name for node in ast.walk(ast.parse(text))
+                if isinstance(node, ast.FunctionDef) and node.end_lineno - node.lineno > 60]
+    return [head for head, body in re.findall(r"([^\n]*)\n\{\n(.*?)^\}", text, re.S | re.M) if body.count("\n") > 60]
+
+
+def test_functions_have_at_most_60_lines():
+    paths = [path for room in ("PKG-STOKESDYN", "unittest", "examples") for path in (TOP / room).rglob("*")
+             if path.suffix in (".c", ".h", ".cpp", ".py")]
+    assert len(paths) > 900
+    assert {path.name: names for path in paths if (names := long_functions(path))} == {}
 
 
 def sources_below():

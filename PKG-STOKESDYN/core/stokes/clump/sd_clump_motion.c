@@ -82,36 +82,37 @@ void sd_clump_flow(const sd_shape *s, const sd_clump_motion *m, const double R[9
   }
 }
 
-/* Slip of the fluid, which has u at the centroid and the gradient G, against the rigid motion: u - U
- * there, and G less the antisymmetric matrix of w, whose product with r is w x r. */
-static void drag_of_slip(const sd_clump *clump, const sd_clump_motion *m, const double R[9],
-                         double eta, const double u[3], const double G[9], const double U[3],
-                         const double w[3], int width, double *F, double *T)
+/* Slip of the fluid, which has u at the centroid and the gradient G (strains: one that is not 0), against the
+ * rigid motion: u - U there, and G less the antisymmetric matrix of w, whose product with r is w x r. */
+static void drag_of_slip(const sd_clump_placed *placed, int strains, const double u[3], const double G[9],
+                         const double U[3], const double w[3], const sd_clump_rows *out)
 {
   const double minus_w[3] = {-w[0], -w[1], -w[2]};
   const double spin[9] = {0.0, -w[2], w[1], w[2], 0.0, -w[0], -w[1], w[0], 0.0};
   double slip[3], A[9];
   sd_minus(u, U, slip);
   for (int d = 0; d < 9; d++) A[d] = G[d] - spin[d];
-  if (m->u)
-    sd_clump_forces(clump, R, eta, slip, A, width, F, T);
+  if (strains)
+    sd_clump_forces(placed->clump, placed->pose, placed->eta, slip, A, out->width, out->F, out->T);
   else
-    sd_clump_forces_rigid(clump, R, eta, slip, minus_w, width, F, T);
+    sd_clump_forces_rigid(placed->clump, placed->pose, placed->eta, slip, minus_w, out->width, out->F, out->T);
 }
 
-void sd_clump_drag(const sd_shape *s, const sd_clump *clump, const sd_clump_motion *m,
-                   const double pose[12], double eta, int width, double *F, double *T)
+void sd_clump_drag(const sd_clump_placed *placed, const sd_clump_motion *m, const sd_clump_rows *out)
 {
+  const double *R = placed->pose, *c = placed->pose + 9;
   double U[3], w[3], u[3], G[9];
-  sd_clump_velocity(s, m, pose, pose + 9, U, w);
-  sd_clump_flow(s, m, pose, pose + 9, u, G);
-  drag_of_slip(clump, m, pose, eta, u, G, U, w, width, F, T);
+  sd_clump_velocity(placed->shape, m, R, c, U, w);
+  sd_clump_flow(placed->shape, m, R, c, u, G);
+  drag_of_slip(placed, m->u != NULL, u, G, U, w, out);
 }
 
 /* G NULL: the flow is uniform */
-static void free_velocity(const sd_clump *clump, const double R[9], double eta, const double load[6],
-                          const double u[3], const double *G, double V[6])
+static void free_velocity(const sd_clump_placed *placed, const double load[6], const double u[3],
+                          const double *G, double V[6])
 {
+  const sd_clump *clump = placed->clump;
+  const double *R = placed->pose;
   double E[6], f[6], v[6], shift[3];
   memcpy(V, u, 3 * sizeof(double));
   memset(V + 3, 0, 3 * sizeof(double));
@@ -119,7 +120,7 @@ static void free_velocity(const sd_clump *clump, const double R[9], double eta, 
   sd_multiply3t(R, load, f);
   sd_multiply3t(R, load + 3, f + 3);
   for (int p = 0; p < 6; p++) {
-    f[p] /= eta;
+    f[p] /= placed->eta;
     for (int e = 0; e < 6 && G; e++) f[p] += clump->strain[6 * p + e] * E[e];
   }
   /* mobility is about the centre of reaction, load and V are about the centroid */
@@ -140,21 +141,20 @@ static void free_velocity(const sd_clump *clump, const double R[9], double eta, 
   }
 }
 
-void sd_clump_move_alone(const sd_shape *s, const sd_clump *clump, const sd_clump_motion *m,
-                         const double pose[12], double eta, const double load[6], int held, double V[6],
-                         int width, double *v, double *F, double *T)
+void sd_clump_move_alone(const sd_clump_placed *placed, const sd_clump_motion *m, const double *load,
+                         double V[6], const sd_clump_rows *out)
 {
   double u[3], G[9];
-  sd_clump_flow(s, m, pose, pose + 9, u, G);
-  if (!held) free_velocity(clump, pose, eta, load, u, m->u ? G : NULL, V);
-  for (int k = 0; k < s->n; k++) {
-    double arm[3], turning[3], *of = v + (long) width * k;
-    sd_multiply3(pose, s->x + 3 * k, arm);
+  sd_clump_flow(placed->shape, m, placed->pose, placed->pose + 9, u, G);
+  if (load) free_velocity(placed, load, u, m->u ? G : NULL, V);
+  for (int k = 0; k < placed->shape->n; k++) {
+    double arm[3], turning[3], *of = out->v + (long) out->width * k;
+    sd_multiply3(placed->pose, placed->shape->x + 3 * k, arm);
     sd_cross(V + 3, arm, turning);
     for (int d = 0; d < 3; d++) {
       of[d] = V[d] + turning[d];
       of[3 + d] = V[3 + d];
     }
   }
-  drag_of_slip(clump, m, pose, eta, u, G, V, V + 3, width, F, T);
+  drag_of_slip(placed, m->u != NULL, u, G, V, V + 3, out);
 }

@@ -24,6 +24,22 @@ typedef struct {
   const double *u, *gradient;
 } sd_clump_motion;
 
+/* A clump in its pose, R row-major and the centroid c, in a fluid of viscosity eta */
+typedef struct {
+  const sd_shape *shape;
+  const sd_clump *clump;
+  /* [12] */
+  const double *pose;
+  double eta;
+} sd_clump_placed;
+
+/* What is told of its spheres, of sphere k from width k on: v [6] velocity and angular velocity; F, T [3] force
+ * and torque of the fluid on it, T NULL: not wanted */
+typedef struct {
+  int width;
+  double *v, *F, *T;
+} sd_clump_rows;
+
 /* Velocity U of the centroid and angular velocity W of the clump in pose R, c. */
 void sd_clump_velocity(const sd_shape *shape, const sd_clump_motion *m, const double R[9],
                        const double c[3], double U[3], double W[3]);
@@ -32,10 +48,8 @@ void sd_clump_velocity(const sd_shape *shape, const sd_clump_motion *m, const do
 void sd_clump_flow(const sd_shape *shape, const sd_clump_motion *m, const double R[9],
                    const double c[3], double u[3], double G[9]);
 
-/* Force F [3] and torque T [3] (NULL: not wanted) of a fluid of viscosity eta on each sphere of the clump in
- * pose R, c, those of sphere k at F + width k and T + width k. No allocation. */
-void sd_clump_drag(const sd_shape *shape, const sd_clump *clump, const sd_clump_motion *m,
-                   const double pose[12], double eta, int width, double *F, double *T);
+/* Force and torque of the fluid on each sphere; v is not written. No allocation. */
+void sd_clump_drag(const sd_clump_placed *placed, const sd_clump_motion *m, const sd_clump_rows *out);
 
 /* Adds force and torque FT [6] at x to the load [6] about a point, from which x is at arm. */
 static inline void sd_clump_add_load(const double arm[3], const double FT[6], double load[6])
@@ -48,15 +62,13 @@ static inline void sd_clump_add_load(const double arm[3], const double FT[6], do
   }
 }
 
-/* A clump without inertia that no other disturbs, in pose R, c: under the load on its spheres, force and
- * torque about the centroid, it moves with V [6], U of the centroid and W, unless V is given (held):
+/* A clump without inertia that no other disturbs: under the load on its spheres, force and torque about the
+ * centroid, it moves with V [6], U of the centroid and W; load NULL: with the V that is given. Free:
  *   (U, W) = (u, curl u / 2) + N (load + eta C : E) / eta
  * u the flow at its centroid (sd_clump_flow) and E the strain there, N its mobility, C its force from
- * the strain for eta = 1. v [6]: velocity and angular velocity of each sphere; F, T [3] (NULL: not
- * wanted): force and torque of the fluid on it; of sphere k at v + width k and so on. No allocation. */
-void sd_clump_move_alone(const sd_shape *shape, const sd_clump *clump, const sd_clump_motion *m,
-                         const double pose[12], double eta, const double load[6], int held, double V[6],
-                         int width, double *v, double *F, double *T);
+ * the strain for eta = 1. No allocation. */
+void sd_clump_move_alone(const sd_clump_placed *placed, const sd_clump_motion *m, const double *load,
+                         double V[6], const sd_clump_rows *out);
 
 SD_END_C
 #endif

@@ -68,11 +68,11 @@ static void give_units(double a, double scale, double B[36], double E[6])
   }
 }
 
-sd_status sd_multiblob_wall_film(const sd_multiblob *m, const sd_wall *wall, const double x[3],
-                                 double a, const double *r, int one_body, double floor, double eta,
-                                 const double u[3], double B[36], double E[6])
+sd_status sd_multiblob_wall_film(const sd_multiblob_sphere *s, const sd_wall *wall, double floor,
+                                 double eta, const double u[3], double B[36], double E[6])
 {
-  const double gap = fmax(sd_wall_height(wall, x) / a - 1.0, floor), height = 1.0 + gap;
+  const double a = s->a;
+  const double gap = fmax(sd_wall_height(wall, s->x) / a - 1.0, floor), height = 1.0 + gap;
   const sd_wall ground = {wall->axis, wall->sign, 0.0};
   double e[3] = {0.0}, along[3] = {0.0}, own[3 * SD_MULTIBLOB_MOST];
   memset(B, 0, 36 * sizeof(double));
@@ -81,9 +81,9 @@ sd_status sd_multiblob_wall_film(const sd_multiblob *m, const sd_wall *wall, con
   e[wall->axis] = wall->sign;
   if (u) memcpy(along, u, sizeof along);
   along[wall->axis] = 0.0;
-  for (int k = 0; k < 3 * m->n; k++) own[k] = r[k] / a;
+  for (int k = 0; k < 3 * s->model->n; k++) own[k] = s->r[k] / a;
   sd_body_shape points;
-  const sd_status status = lone_shell(m, &ground, height, own, one_body, &points);
+  const sd_status status = lone_shell(s->model, &ground, height, own, s->one_body, &points);
   if (status != SD_OK) return status;
   const sd_wall_film exact = sd_wall_film_exact(1.0, height, floor);
   sd_wall_film_matrix(&exact, e, 1.0, B);

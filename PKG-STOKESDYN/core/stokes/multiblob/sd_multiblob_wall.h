@@ -27,14 +27,24 @@ SD_BEGIN_C
 /* Gap in radii of the sphere from which on there is no film */
 #define SD_MULTIBLOB_WALL_END 2.0
 
-/* x [3] centre of a sphere of radius a, r [3 m->n] from there to its points, turned as they may be;
- * one_body: has it the addition? floor > 0, in radii. B [36] row-major, rows F T, columns U W, and
- * E [6] for u [3], the undisturbed velocity at the centre; NULL: the fluid rests, and E is 0. Both
- * are 0 at once from the end on; nearer it costs the matrix of m->n points and its inverse.
+/* A sphere that is a shell */
+typedef struct {
+  const sd_multiblob *model;
+  /* [3] centre; radius */
+  const double *x;
+  double a;
+  /* [3 model->n] from the centre to its points, turned as they may be */
+  const double *r;
+  /* 1: with the addition */
+  int one_body;
+} sd_multiblob_sphere;
+
+/* floor > 0, in radii. B [36] row-major, rows F T, columns U W, and E [6] for u [3], the undisturbed
+ * velocity at the centre; NULL: the fluid rests, and E is 0. Both are 0 at once from the end on; nearer it
+ * costs the matrix of all points and its inverse.
  * SD_OK; SD_ENOMEMORY; SD_ESINGULAR: the points' matrix is not positive definite; SD_ENOTFINITE. */
-sd_status sd_multiblob_wall_film(const sd_multiblob *m, const sd_wall *wall, const double x[3],
-                                 double a, const double *r, int one_body, double floor, double eta,
-                                 const double u[3], double B[36], double E[6]);
+sd_status sd_multiblob_wall_film(const sd_multiblob_sphere *s, const sd_wall *wall, double floor,
+                                 double eta, const double u[3], double B[36], double E[6]);
 
 SD_END_C
 #endif

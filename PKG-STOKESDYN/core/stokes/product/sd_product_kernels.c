@@ -41,19 +41,21 @@ NOT_INLINE void leave_out_self(int lane, vec *f, vec *h)
 }
 
 /* Of floats in steps as they are: no length that forces need leaves their range. */
-INLINE void add_forces(const law *w, int both, int self, const place *i, const place *j,
-                       const vec *F, const vec *G, vec *u, vec *v)
+INLINE void add_forces(const law *w, int self, const side *i, const side *j)
 {
-  const vec dx = steps_between(i->x, j->x), dy = steps_between(i->y, j->y), dz = steps_between(i->z, j->z);
+  const place *p = &i->at, *q = &j->at;
+  const vec *F = i->F, *G = j->F;
+  vec *u = i->u, *v = j->u;
+  const vec dx = steps_between(p->x, q->x), dy = steps_between(p->y, q->y), dz = steps_between(p->z, q->z);
   const vec r2 = dx * dx + dy * dy + dz * dz;
   vec f, h;
-  forces_block(w, r2, i->a, j->a, i->a * i->a + j->a * j->a, &f, &h);
+  forces_block(w, r2, p->a, q->a, p->a * p->a + q->a * q->a, &f, &h);
   if (self >= 0 && self < LANES) leave_out_self(self, &f, &h);
   const vec c = h * (dx * G[0] + dy * G[1] + dz * G[2]);
   u[0] = (u[0] + f * G[0]) + c * dx;
   u[1] = (u[1] + f * G[1]) + c * dy;
   u[2] = (u[2] + f * G[2]) + c * dz;
-  if (!both) return;
+  if (!v) return;
   const vec e = h * (dx * F[0] + dy * F[1] + dz * F[2]);
   v[0] = (v[0] + f * F[0]) + e * dx;
   v[1] = (v[1] + f * F[1]) + e * dy;
@@ -61,22 +63,22 @@ INLINE void add_forces(const law *w, int both, int self, const place *i, const p
 }
 
 /* Seen from the source, r is -r and the two cross products change places. */
-INLINE void add_torques(const law *w, int both, int self, const place *i, const place *j,
-                        const vec *F, const vec *G, vec *u, vec *v)
+INLINE void add_torques(const law *w, int self, const side *i, const side *j)
 {
-  const vec dx = length_between(i->x, j->x, w->step), dy = length_between(i->y, j->y, w->step);
-  const vec dz = length_between(i->z, j->z, w->step);
+  const place *p = &i->at, *q = &j->at;
+  const vec dx = length_between(p->x, q->x, w->step), dy = length_between(p->y, q->y, w->step);
+  const vec dz = length_between(p->z, q->z, w->step);
   const vec r2 = dx * dx + dy * dy + dz * dz;
   grand b;
-  torques_block(w, r2, i->a, j->a, i->a * i->a + j->a * j->a, &b);
+  torques_block(w, r2, p->a, q->a, p->a * p->a + q->a * q->a, &b);
   if (self >= 0 && self < LANES) {
     vec f = b.f, k = b.k; /* the others are 0 or multiply r */
     leave_out_self(self, &f, &k);
     b.f = f;
     b.k = k;
   }
-  grand_add(&b, b.cji, b.cij, dx, dy, dz, G, u);
-  if (both) grand_add(&b, -b.cij, -b.cji, dx, dy, dz, F, v);
+  grand_add(&b, b.cji, b.cij, dx, dy, dz, j->F, i->u);
+  if (j->u) grand_add(&b, -b.cij, -b.cji, dx, dy, dz, i->F, j->u);
 }
 
 DEFINE_SYMMETRIC(symmetric, 3, MOST_TARGETS, add_forces)

@@ -39,11 +39,17 @@ typedef struct {
   vec x, y, z, a;
 } place;
 
-/* A target i in all lanes and a vector of sources j: u += what the target gets of their forces G;
- * both: v += what they get of its F. self: the lane in which the source is the target, any other
- * number: none. F, G, u, v: [width] */
-typedef void pair_sum(const law *w, int both, int self, const place *i, const place *j,
-                      const vec *F, const vec *G, vec *u, vec *v);
+/* One side of the pairs of a vector: where it is, its forces F [width] and what it gets, u [width]; u NULL:
+ * nothing */
+typedef struct {
+  place at;
+  const vec *F;
+  vec *u;
+} side;
+
+/* A target i in all lanes and a vector of sources j: each gets what the forces of the other make. self: the
+ * lane in which the source is the target, any other number: none */
+typedef void pair_sum(const law *w, int self, const side *i, const side *j);
 
 /* Sources are taken in chunks that stay in the first-level cache while all targets pass: sixteen
  * columns, those with torques, of so many spheres are 16 KiB, half of it. */
@@ -57,9 +63,14 @@ typedef struct {
   int begin;
 } chunk_sums;
 
-/* Targets from i on against the vectors of sources from j0 to j1 */
-INLINE void tile(int width, int targets, pair_sum *add, const law *w, int both, const sd_packed *p,
-                 const chunk_sums *sums, int i, int j0, int j1)
+/* Sources of a chunk, in whole vectors */
+typedef struct {
+  int begin, end;
+} sources;
+
+/* Targets from i on against sources; sums NULL: these get nothing */
+INLINE void tile(int width, int targets, pair_sum *add, const law *w, const sd_packed *p, int i, sources s,
+                 const chunk_sums *sums)
 {
   const real *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
   place target[MOST_TARGETS];
@@ -73,18 +84,20 @@ INLINE void tile(int width, int targets, pair_sum *add, const law *w, int both, 
       u[t][k] = all(0.0);
     }
   }
-  for (int j = j0; j < j1; j += LANES) {
-    const place source = {load(px + j), load(py + j), load(pz + j), load(pa + j)};
+  for (int j = s.begin; j < s.end; j += LANES) {
+    const side source = {{load(px + j), load(py + j), load(pz + j), load(pa + j)}, G, sums ? v : NULL};
 #pragma GCC unroll 6
     for (int k = 0; k < width; k++) {
       G[k] = load((const real *) p->f[k] + j);
-      if (both) v[k] = load(sums->of[k] + j - sums->begin);
+      if (sums) v[k] = load(sums->of[k] + j - sums->begin);
     }
 #pragma GCC unroll 2
-    for (int t = 0; t < targets; t++)
-      add(w, both, both ? -1 : i + t - j, target + t, &source, F[t], G, u[t], v);
+    for (int t = 0; t < targets; t++) {
+      const side one = {target[t], F[t], u[t]};
+      add(w, sums ? -1 : i + t - j, &one, &source);
+    }
 #pragma GCC unroll 6
-    for (int k = 0; k < width && both; k++) store(sums->of[k] + j - sums->begin, v[k]);
+    for (int k = 0; k < width && sums; k++) store(sums->of[k] + j - sums->begin, v[k]);
   }
 #pragma GCC unroll 2
   for (int t = 0; t < targets; t++)
@@ -159,8 +172,8 @@ INLINE void share_of_pairs(int width, int targets, pair_sum *add, const law *w, 
       if (!mine(i / LANES, part, parts)) continue;
       const int from = i + LANES > c ? i + LANES : c;
       for (int t = i; t < i + LANES; t += targets) {
-        if (i >= c) tile(width, targets, add, w, 0, p, &sums, t, i, i + LANES);
-        if (from < end) tile(width, targets, add, w, 1, p, &sums, t, from, end);
+        if (i >= c) tile(width, targets, add, w, p, t, (sources){i, i + LANES}, NULL);
+        if (from < end) tile(width, targets, add, w, p, t, (sources){from, end}, &sums);
       }
       give_sums(p, width, &sums, end);
     }
@@ -217,8 +230,8 @@ INLINE void rows_of_pairs(int width, int itself, pair_sum *add, const law *w, co
       gather(p->row, 8, j, at);
       gather(p->row + 4, 8, j, F);
       if (width == 6) gather(p->torque_row, 4, j, F + 3);
-      const place source = {at[0], at[1], at[2], at[3]};
-      add(w, 0, -1, &target, &source, NULL, F, u, NULL);
+      const side one = {target, NULL, u}, source = {{at[0], at[1], at[2], at[3]}, F, NULL};
+      add(w, -1, &one, &source);
     }
 #pragma GCC unroll 6
     for (int k = 0; k < width; k++) p->u[k][i] += total(u[k]);

@@ -1,7 +1,7 @@
 /* What the image of every sphere adds to the fast product: the formulas of sd_wall.h in vectors. The
  * spheres stand in the axes of the wall, at heights of at least their radii. A sphere meets its own
  * image as it meets any other, and no pair has another formula, so that there is no branch. The
- * functions of a pair serve both of its spheres, as c4 and c5, and i and j, change places. */
+ * functions of a pair serve both of its spheres. */
 #include "sd_product_loops.h"
 
 /* c1 ... c5 and what both widths share of them; A and B: a^2/6, b^2/6 */
@@ -44,25 +44,38 @@ INLINE void image_of(const law *w, const place *i, const place *j, image *m)
   if (w->taper != SD_TAPER_NONE) taper_image(w, g - h, m);
 }
 
-/* u [3] += image of F, seen from i by c4 and c5 as they are, from j with these exchanged and x, y
- * turned round */
-INLINE void image_add(const image *m, vec x, vec y, vec c4, vec c5, const vec *F, vec *u)
+/* What changes with the sphere that sees the image: c4 and c5 change places, and x, y are turned round. */
+typedef struct {
+  vec x, y, c4, c5;
+} view;
+
+INLINE view seen_by_target(const image *m)
 {
-  const vec p = x * F[0] + y * F[1] - m->z * F[2];
-  const vec along = m->c[2] * p - c4 * F[2], up = c5 * p - m->c[1] * F[2];
+  return (view){m->x, m->y, m->c[3], m->c[4]};
+}
+
+INLINE view seen_by_source(const image *m)
+{
+  return (view){-m->x, -m->y, m->c[4], m->c[3]};
+}
+
+/* u [3] += image of F */
+INLINE void image_add(const image *m, view by, const vec *F, vec *u)
+{
+  const vec x = by.x, y = by.y, p = x * F[0] + y * F[1] - m->z * F[2];
+  const vec along = m->c[2] * p - by.c4 * F[2], up = by.c5 * p - m->c[1] * F[2];
   u[0] = (u[0] + m->c[0] * F[0]) + along * x;
   u[1] = (u[1] + m->c[0] * F[1]) + along * y;
   u[2] = (u[2] + up) + (along * m->z - m->c[0] * F[2]);
 }
 
-INLINE void add_images(const law *w, int both, int self, const place *i, const place *j,
-                       const vec *F, const vec *G, vec *u, vec *v)
+INLINE void add_images(const law *w, int self, const side *i, const side *j)
 {
   image m;
   (void) self;
-  image_of(w, i, j, &m);
-  image_add(&m, m.x, m.y, m.c[3], m.c[4], G, u);
-  if (both) image_add(&m, -m.x, -m.y, m.c[4], m.c[3], F, v);
+  image_of(w, &i->at, &j->at, &m);
+  image_add(&m, seen_by_target(&m), j->F, i->u);
+  if (j->u) image_add(&m, seen_by_source(&m), i->F, j->u);
 }
 
 /* --- forces and torques --- */
@@ -82,13 +95,14 @@ INLINE half_image half_of(const image *m, vec difference, vec height, vec square
 }
 
 /* u [6] += image of F [6]; me, it: half images of target and source */
-INLINE void image_add_grand(const image *m, const half_image *me, const half_image *it, vec x, vec y,
-                            vec c4, vec c5, const vec *F, vec *u)
+INLINE void image_add_grand(const image *m, const half_image *me, const half_image *it, view by, const vec *F,
+                            vec *u)
 {
+  const vec x = by.x, y = by.y;
   const vec d = m->u3 - all(3.0) * m->u5 * m->z * m->z, turn = m->u3 * F[5];
   const vec p = x * F[0] + y * F[1] - m->z * F[2], t = x * F[4] - y * F[3];
-  const vec along = m->c[2] * p - c4 * F[2] - me->l * t;
-  const vec up = c5 * p - m->c[1] * F[2] - me->n * t;
+  const vec along = m->c[2] * p - by.c4 * F[2] - me->l * t;
+  const vec up = by.c5 * p - m->c[1] * F[2] - me->n * t;
   u[0] = (u[0] + m->c[0] * F[0]) + (along * x + turn * y) - me->k * F[4];
   u[1] = (u[1] + m->c[0] * F[1]) + (along * y - turn * x) + me->k * F[3];
   u[2] = (u[2] + up) + (along * m->z - m->c[0] * F[2]);
@@ -101,16 +115,15 @@ INLINE void image_add_grand(const image *m, const half_image *me, const half_ima
       all(0.5) * (d * F[5] + all(3.0) * m->u5 * m->z * r);
 }
 
-INLINE void add_grand_images(const law *w, int both, int self, const place *i, const place *j,
-                             const vec *F, const vec *G, vec *u, vec *v)
+INLINE void add_grand_images(const law *w, int self, const side *i, const side *j)
 {
   image m;
   (void) self;
-  image_of(w, i, j, &m);
-  const half_image of_i = half_of(&m, i->z - j->z, i->z, m.A);
-  const half_image of_j = half_of(&m, j->z - i->z, j->z, m.B);
-  image_add_grand(&m, &of_i, &of_j, m.x, m.y, m.c[3], m.c[4], G, u);
-  if (both) image_add_grand(&m, &of_j, &of_i, -m.x, -m.y, m.c[4], m.c[3], F, v);
+  image_of(w, &i->at, &j->at, &m);
+  const vec g = i->at.z, h = j->at.z;
+  const half_image of_i = half_of(&m, g - h, g, m.A), of_j = half_of(&m, h - g, h, m.B);
+  image_add_grand(&m, &of_i, &of_j, seen_by_target(&m), j->F, i->u);
+  if (j->u) image_add_grand(&m, &of_j, &of_i, seen_by_source(&m), i->F, j->u);
 }
 
 DEFINE_SYMMETRIC(symmetric, 3, 1, add_images)

@@ -147,11 +147,13 @@ static void drag_is_that_of_the_slip(void **state)
   sd_clump clump = solve_cluster("helix4_chiral", 12, 0);
   memcpy(s.u, s.v, sizeof(s.u));
   memset(s.gradient, 0, sizeof(s.gradient));
-  sd_clump_drag(&s.shape, &clump, &s.motion, pose, 1.7, 3, F, T);
+  const sd_clump_placed placed = {&s.shape, &clump, pose, 1.7};
+  const sd_clump_rows out = {3, NULL, F, T};
+  sd_clump_drag(&placed, &s.motion, &out);
   for (int k = 0; k < 3 * s.n; k++) CHECK_NEAR(F[k], 0.0, 1e-11);
   s.motion.u = NULL;
   for (int k = 0; k < s.n; k++) memcpy(s.v + 3 * k, (double[3]){0.3, 0.5, -0.1}, sizeof(double) * 3);
-  sd_clump_drag(&s.shape, &clump, &s.motion, pose, 1.7, 3, F, T);
+  sd_clump_drag(&placed, &s.motion, &out);
   for (int k = 0; k < 3 * s.n; k++) total[k % 3] += F[k];
   for (int p = 0; p < 9; p++) R[p] = clump.R[6 * (p / 3) + p % 3];
   double slip[3], body[3], lab[3], expected[3];
@@ -184,7 +186,9 @@ static void the_fluid_balances_what_acts_on_a_clump(void **state)
     }
     sd_minus(s.x, s.c, arm);
     sd_clump_add_load(arm, about_first, load);
-    sd_clump_move_alone(&s.shape, &clump, &s.motion, pose, 1.7, load, 0, V, 12, rows, rows + 6, rows + 9);
+    const sd_clump_placed placed = {&s.shape, &clump, pose, 1.7};
+    const sd_clump_rows out = {12, rows, rows + 6, rows + 9};
+    sd_clump_move_alone(&placed, &s.motion, load, V, &out);
     for (int k = 0; k < s.n; k++) {
       const double *v = rows + 12 * k, *F = v + 6, *T = v + 9;
       double left[3], couple[3], turning[3];
@@ -201,7 +205,7 @@ static void the_fluid_balances_what_acts_on_a_clump(void **state)
     }
     for (int d = 0; d < 6; d++) CHECK_NEAR(sum[d], 0.0, 1e-9);
     memcpy(V, told, sizeof(V));
-    sd_clump_move_alone(&s.shape, &clump, &s.motion, pose, 1.7, load, 1, V, 12, rows, rows + 6, rows + 9);
+    sd_clump_move_alone(&placed, &s.motion, NULL, V, &out);
     for (int d = 0; d < 6; d++) CHECK_NEAR(V[d], told[d], 0.0);
     sd_clump_free(&clump);
     sd_shape_free(&s.shape);

@@ -202,10 +202,11 @@ static inline void expected_in_slab(const climber *row, const cast *s, int i, in
 {
   const double eta = eta_of(s, i, j), *p = s->x + 3 * i, *q = s->x + 3 * j;
   const double above[2][3] = {{p[0], p[1], p[2] - wall_at}, {q[0], q[1], q[2] - wall_at}};
-  if (row->height > 0.0) slit_tensor(above[0], s->a[i], above[1], s->a[j], eta, row->edge, row->height, i != j, M);
-  if (row->no_flux) stop_flux(above[0], s->a[i], above[1], s->a[j], eta, row->edge, row->height, M);
+  const pair_above pair = {above[0], above[1], s->a[i], s->a[j], i != j};
+  if (row->height > 0.0) slit_tensor(&pair, eta, row->edge, row->height, M);
+  if (row->no_flux) stop_flux(&pair, eta, row->edge, row->height, M);
   if (row->height > 0.0) return;
-  floor_tensor(above[0], s->a[i], above[1], s->a[j], eta, row->edge, i != j, M);
+  floor_tensor(&pair, eta, row->edge, M);
 }
 
 /* What a pair should be in the boundary of the row, velocity of i from the force on j; i = j: of one with its own

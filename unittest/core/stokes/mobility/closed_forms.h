@@ -98,12 +98,18 @@ static inline void periodic_tensor(const double r[3], double a, double b, double
       }
 }
 
-/* Two spheres, or (home = 0) one with its own images, above the wall z = 0 in a box of square section, all images along
- * it: pairs and their images in the wall, to a smooth end at 40 cells. Beyond it is 12 h g xx/(8 pi eta R^5) on average
- * (Blake 1971). */
-static inline void floor_tensor(const double xi[3], double a, const double xj[3], double b, double eta, double edge,
-                                int home, double M[9])
+/* Two spheres at xi and xj, or (home = 0) one with its own images, of radii a and b */
+typedef struct {
+  const double *xi, *xj;
+  double a, b;
+  int home;
+} pair_above;
+
+/* Above the wall z = 0 in a box of square section, all images along it: pairs and their images in the wall, to a smooth
+ * end at 40 cells. Beyond it is 12 h g xx/(8 pi eta R^5) on average (Blake 1971). */
+static inline void floor_tensor(const pair_above *p, double eta, double edge, double M[9])
 {
+  const double *xi = p->xi, *xj = p->xj, a = p->a, b = p->b;
   const double far = 40.0 * edge, mean = 1.5 * xi[2] * xj[2] * tgamma(5.0 / 6.0) / (eta * far * edge * edge);
   const sd_wall ground = {2, 1, 0.0};
   memset(M, 0, 9 * sizeof(double));
@@ -115,7 +121,7 @@ static inline void floor_tensor(const double xi[3], double a, const double xj[3]
       const double part = exp(-pow((r[0] * r[0] + r[1] * r[1]) / (far * far), 3));
       double bare[9] = {0.0}, image[9];
       if (part < 1e-15) continue;
-      if (home || k != 0 || l != 0) pair_tensor(r, a, b, eta, bare);
+      if (p->home || k != 0 || l != 0) pair_tensor(r, a, b, eta, bare);
       else bare[0] = bare[4] = bare[8] = 1.0 / (6.0 * SD_PI * eta * a);
       sd_wall_block(&ground, 3, xi, a, x, b, eta, image);
       for (int e = 0; e < 9; e++) M[e] += part * (bare[e] + image[e]);
@@ -162,15 +168,14 @@ static inline void wave_of_second_wall(double k, double H, double z, double s_z,
   for (int e = 0; e < 4; e++) G[e] -= t[e];
 }
 
-/* Two spheres, or one with its own images, between the walls z = 0 and z = H, with no mean pressure gradient along
- * them: those above the first wall and, wave by wave, what the second one adds. No sphere cuts a wall; the waves are
- * those of heights below 3/4 H. */
-static inline void slit_tensor(const double xi[3], double a, const double xj[3], double b, double eta, double edge,
-                               double H, int home, double M[9])
+/* The same between the walls z = 0 and z = H, with no mean pressure gradient along them: those above the first wall
+ * and, wave by wave, what the second one adds. No sphere cuts a wall; the waves are those of heights below 3/4 H. */
+static inline void slit_tensor(const pair_above *p, double eta, double edge, double H, double M[9])
 {
   enum { WAVES = 12 };
+  const double *xi = p->xi, *xj = p->xj, a = p->a, b = p->b;
   const double S = edge * edge, z = xi[2], h = xj[2];
-  floor_tensor(xi, a, xj, b, eta, edge, home, M);
+  floor_tensor(p, eta, edge, M);
   for (int d = 0; d < 2; d++) M[4 * d] -= z * h / (eta * S * H);
   for (int m = -WAVES; m <= WAVES; m++)
     for (int n = -WAVES; n <= WAVES; n++) {
@@ -199,10 +204,10 @@ static inline void slit_tensor(const double xi[3], double a, const double xj[3],
 /* The same where the mean flow along the walls is stopped by a pressure gradient: u = z (H - z)/(2 eta) is the flow of
  * a gradient of -1, and by reciprocity the flux that a force makes is its velocity at the sphere, over the section
  * S. */
-static inline void stop_flux(const double xi[3], double a, const double xj[3], double b, double eta, double edge,
-                             double H, double M[9])
+static inline void stop_flux(const pair_above *p, double eta, double edge, double H, double M[9])
 {
-  const double of_i = xi[2] * (H - xi[2]) - a * a / 3.0, of_j = xj[2] * (H - xj[2]) - b * b / 3.0;
+  const double z = p->xi[2], h = p->xj[2];
+  const double of_i = z * (H - z) - p->a * p->a / 3.0, of_j = h * (H - h) - p->b * p->b / 3.0;
   for (int d = 0; d < 2; d++) M[4 * d] -= 3.0 / (eta * edge * edge * H * H * H) * of_i * of_j;
 }
 

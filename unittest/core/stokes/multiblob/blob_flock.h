@@ -155,9 +155,9 @@ static inline void tie_with_films(blob_flock *f, sd_bodies *A)
   blobs_add_films(s, 1.0, NULL);
   for (int i = 0; i < s->n && f->wall.sign != 0; i++) {
     double B[36], E[6];
-    assert_int_equal(sd_multiblob_wall_film(&s->m, &f->wall, s->x + 3 * i, s->a[i], s->r + 3 * s->m.n * i,
-                                            s->m.delta != 0.0, s->floor, 1.0, NULL, B, E),
-                     SD_OK);
+    const sd_multiblob_sphere sphere = {&s->m, s->x + 3 * i, s->a[i], s->r + 3 * s->m.n * i,
+                                        s->m.delta != 0.0};
+    assert_int_equal(sd_multiblob_wall_film(&sphere, &f->wall, s->floor, 1.0, NULL, B, E), SD_OK);
     sd_lubrication_add_own(&s->L, i, B, E);
   }
   f->tie.L = &s->L;

@@ -168,6 +168,36 @@ static void add_own(const place_of *s, const scene_at *at, const sd_body_follow 
   for (int k = 0; k < 6 * s->n + 6; k++) mean[k] += answer[k];
 }
 
+/* The same by differences along each coordinate */
+static void add_by_differences(const place_of *s, const scene_at *at, const sd_drifter *d, double *mean)
+{
+  const int rows = (int) sd_bodies_unknowns(&at->A);
+  double *l = calloc(2 * (size_t) rows, sizeof(double)), *slip = l + rows, load[24] = {0.0}, answer[ANSWER],
+         F[6 * MOST] = {0.0};
+  for (int j = 0; j < 6 * s->n; j++) {
+    double unit[24] = {0.0};
+    if (!s->m && j % 6 >= 3) continue;
+    unit[j] = 1.0;
+    sd_drifter_spread(&at->A, d, unit, l);
+    for (int sign = -1; sign < 2; sign += 2) {
+      const place_of there = moved(s, unit, sign * STEP);
+      scene_at here = build(&there, 0);
+      double *work = malloc(sizeof(double) * (size_t) (18 * s->n + 6 * at->A.spheres.n + 2 * rows));
+      assert_int_equal(sd_drifter_difference(&here.A, l, sign / (2.0 * STEP), work, slip, load), SD_OK);
+      free(work);
+      double on_spheres[6 * MOST] = {0.0};
+      for (int i = 0; i < rows; i++) on_spheres[6 * here.f->sphere[i / 3] + i % 3] += l[i];
+      add_moments(here.f, l, on_spheres, sign / (2.0 * STEP), mean + 6 * s->n);
+      blob_flock_free(here.f);
+    }
+  }
+  for (int b = 0; b < s->n && s->m; b++)
+    for (int e = 3; e < 6; e++) F[6 * s->m * b + e] = load[6 * b + e];
+  solve_at(s, s, slip, F, NONE, answer);
+  for (int k = 0; k < 6 * s->n + 6; k++) mean[k] += answer[k];
+  free(l);
+}
+
 /* Of the mean of one step relative to the drift, or of the moments, whichever is larger. by_differences: what A leaves
  * of it is taken by differences along each coordinate, and A of clumps is that of the lone response */
 static double error_of_drift(const place_of *s, int by_differences)
@@ -205,33 +235,8 @@ static double error_of_drift(const place_of *s, int by_differences)
     for (int k = 0; k < 6 * n; k++) size += F[k] * F[k];
     if (size > 0.0) add_mean(s, &at.A, &d, NULL, F, mean);
   }
-  if (by_differences) {
-    double *l = calloc(2 * (size_t) rows, sizeof(double)), *slip = l + rows, load[24] = {0.0}, answer[ANSWER],
-           F[6 * MOST] = {0.0};
-    for (int j = 0; j < 6 * s->n; j++) {
-      double unit[24] = {0.0};
-      if (!s->m && j % 6 >= 3) continue;
-      unit[j] = 1.0;
-      sd_drifter_spread(&at.A, &d, unit, l);
-      for (int sign = -1; sign < 2; sign += 2) {
-        const place_of there = moved(s, unit, sign * STEP);
-        scene_at here = build(&there, 0);
-        double *work = malloc(sizeof(double) * (size_t) (18 * s->n + 6 * n + 2 * rows));
-        assert_int_equal(sd_drifter_difference(&here.A, l, sign / (2.0 * STEP), work, slip, load), SD_OK);
-        free(work);
-        double on_spheres[6 * MOST] = {0.0};
-        for (int i = 0; i < rows; i++) on_spheres[6 * here.f->sphere[i / 3] + i % 3] += l[i];
-        add_moments(here.f, l, on_spheres, sign / (2.0 * STEP), mean + 6 * s->n);
-        blob_flock_free(here.f);
-      }
-    }
-    for (int b = 0; b < s->n && s->m; b++)
-      for (int e = 3; e < 6; e++) F[6 * s->m * b + e] = load[6 * b + e];
-    solve_at(s, s, slip, F, NONE, answer);
-    for (int k = 0; k < 6 * s->n + 6; k++) mean[k] += answer[k];
-    free(l);
-  } else
-    add_own(s, &at, &follow, mean);
+  if (by_differences) add_by_differences(s, &at, &d, mean);
+  else add_own(s, &at, &follow, mean);
   sd_bodies_noise_free(&noise);
   sd_body_root_free(&root);
   sd_body_follow_free(&follow);

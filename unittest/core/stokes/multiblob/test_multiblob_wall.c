@@ -34,10 +34,8 @@ static blobs *above_wall(int points, int one_body, int n, const double *x, const
 
 static void wall_film(const blobs *s, int i, const double *u, double B[36], double E[6])
 {
-  assert_int_equal(sd_multiblob_wall_film(&s->m, &ground, s->x + 3 * i, s->a[i],
-                                          s->r + 3 * s->m.n * i, s->m.delta != 0.0, floor_gap, 1.0,
-                                          u, B, E),
-                   SD_OK);
+  const sd_multiblob_sphere sphere = {&s->m, s->x + 3 * i, s->a[i], s->r + 3 * s->m.n * i, s->m.delta != 0.0};
+  assert_int_equal(sd_multiblob_wall_film(&sphere, &ground, floor_gap, 1.0, u, B, E), SD_OK);
 }
 
 static void add_wall_films(blobs *s)
@@ -150,10 +148,9 @@ static void any_side(void **state)
     x[wall.axis] = wall.at + wall.sign * 1.15;
     for (int k = 0; k < m.n; k++) sd_multiply3(Q, m.r + 3 * k, r + 3 * k);
     sd_multiply3(Q, u, turned);
-    assert_int_equal(sd_multiblob_wall_film(&m, &ground, at, 1.0, m.r, 1, 1e-3, 1.3, u, B, E),
-                     SD_OK);
-    assert_int_equal(sd_multiblob_wall_film(&m, &wall, x, 1.0, r, 1, 1e-3, 1.3, turned, C, G),
-                     SD_OK);
+    const sd_multiblob_sphere above = {&m, at, 1.0, m.r, 1}, beside = {&m, x, 1.0, r, 1};
+    assert_int_equal(sd_multiblob_wall_film(&above, &ground, 1e-3, 1.3, u, B, E), SD_OK);
+    assert_int_equal(sd_multiblob_wall_film(&beside, &wall, 1e-3, 1.3, turned, C, G), SD_OK);
     for (int p = 0; p < 6; p++) {
       const int pp = p - p % 3 + axis[p % 3];
       const double sign = p % 3 == 2 ? wall.sign : 1.0;

@@ -25,10 +25,17 @@ INLINE void image_polynomials_of_all(const sd_image_part *p, double b, int degre
           b * b * p->coefficient[f][2][k];
 }
 
-/* c1 ... c5 of the smooth part */
-INLINE void image_smooth(int equal, int degree, const double *polynomial, vec t, vec g, vec h, vec bj, vec D,
-                         vec *c)
+/* Spheres at the heights g and h, r2 the square of the distance from one to the image of the other; A, B:
+ * a^2/6 of each */
+typedef struct {
+  vec r2, g, h, A, B;
+} image_pairs;
+
+/* c1 ... c5 of the smooth part; bj = B less that of the reference radius */
+INLINE void image_smooth(int equal, int degree, const double *polynomial, vec t, vec bj,
+                         const image_pairs *m, vec *c)
 {
+  const vec g = m->g, h = m->h, D = m->B - m->A;
   vec P[2 * SD_IMAGE_SYMMETRIC + 2];
   horner(SD_IMAGE_SYMMETRIC, degree, polynomial, SD_RADIAL_TERMS, t, P);
   if (!equal) {
@@ -55,10 +62,11 @@ INLINE void image_smooth(int equal, int degree, const double *polynomial, vec t,
   }
 }
 
-/* c1 ... c5 of the image itself: A, B = a^2/6 */
-INLINE void image_whole(vec r2, vec g, vec h, vec A, vec B, vec *c)
+/* c1 ... c5 of the image itself */
+INLINE void image_whole(const image_pairs *m, vec *c)
 {
-  const vec u = inverse_root(r2), u2 = u * u, u3 = u * u2, u5 = u3 * u2, z = g + h, w = A + B, q = A * B;
+  const vec g = m->g, h = m->h, A = m->A, B = m->B;
+  const vec u = inverse_root(m->r2), u2 = u * u, u3 = u * u2, u5 = u3 * u2, z = g + h, w = A + B, q = A * B;
   const vec e = all(12.0) * z * (A * h + B * g) + all(24.0) * q, Q = all(120.0) * q * z * (u5 * u2);
   const vec s = all(2.0) * (h * g + w), v = all(12.0) * (B - A) * u5, Q2 = Q + Q;
   c[0] = e * u5 - u - s * u3 - Q * z;
@@ -97,8 +105,9 @@ INLINE void near_images(int equal, int degree, const sd_image_part *p)
       gather(p->row + 4, 8, j, F);
       const vec dx = x - at[0], dy = y - at[1], h = at[2], z = g + h, B = at[3] * at[3] * sixth;
       const vec r2 = dx * dx + dy * dy + z * z, t = smaller(r2, range2) * twice - one;
-      image_whole(r2, g, h, A, B, c);
-      image_smooth(equal, degree, mine, t, g, h, B - ref, B - A, smooth);
+      const image_pairs m = {r2, g, h, A, B};
+      image_whole(&m, c);
+      image_smooth(equal, degree, mine, t, B - ref, &m, smooth);
 #pragma GCC unroll 5
       for (int f = 0; f < 5; f++) c[f] -= smooth[f];
       image_add(c, c[3], c[4], dx, dy, z, F, u);

@@ -26,10 +26,10 @@ INLINE void near_within(int equal, int degree, const near_constants *all_pairs, 
 {
   for (int q = 0; q < b->rows; q++) {
     const yes_no itself = load_any(row_of_lane) == all((real) q);
-    vec f, h, d[3], F[3];
-    near_radial(equal, 1, degree, all_pairs, b->row + q, at, d, &f, &h);
+    const near_pairs m = near_radial(equal, 1, degree, all_pairs, b->row + q, at);
+    vec F[3];
     for (int c = 0; c < 3; c++) F[c] = where(itself, all(0.0), at[4 + c]);
-    near_add(f, h, d, F, b->u[q]);
+    near_add(&m, F, b->u[q]);
   }
 }
 
@@ -39,10 +39,9 @@ INLINE void near_between(int equal, int degree, const near_constants *all_pairs,
 {
   for (; near; near &= near - 1) {
     const int q = __builtin_ctz(near);
-    vec f, h, d[3];
-    near_radial(equal, 1, degree, all_pairs, b->row + q, at, d, &f, &h);
-    near_add(f, h, d, at + 4, b->u[q]);
-    near_add_of(b->row + q, f, h, d, v);
+    const near_pairs m = near_radial(equal, 1, degree, all_pairs, b->row + q, at);
+    near_add(&m, at + 4, b->u[q]);
+    near_add_of(b->row + q, &m, v);
   }
 }
 

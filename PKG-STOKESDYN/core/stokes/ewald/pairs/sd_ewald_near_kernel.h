@@ -123,13 +123,19 @@ INLINE near_first near_first_of(const real *own, const real *c)
   return (near_first){{own[0], own[1], own[2]}, {own[4], own[5], own[6]}, own[3], c};
 }
 
-/* f, h of pairs with spheres whose rows are the columns `at`, d apart. equal: all radii are a_ref, and two
- * polynomials do; in floats the arithmetic of a pair is so short that a branch costs more than the formulas
- * on both its sides. ends: they are 0 beyond ends2; without it all pairs are within the range */
-INLINE void near_radial(int equal, int ends, int degree, const near_constants *k, const near_first *i,
-                        const vec at[8], vec d[3], vec *f, vec *h)
+/* Pairs of one sphere with a vector of others, d from these to it: M F = f F + h d (d.F) */
+typedef struct {
+  vec d[3], f, h;
+} near_pairs;
+
+/* Pairs with spheres whose rows are the columns `at`. equal: all radii are a_ref, and two polynomials do; in
+ * floats the arithmetic of a pair is so short that a branch costs more than the formulas on both its sides.
+ * ends: f and h are 0 beyond ends2; without it all pairs are within the range */
+INLINE near_pairs near_radial(int equal, int ends, int degree, const near_constants *k, const near_first *i,
+                              const vec at[8])
 {
-  vec D[4];
+  near_pairs out;
+  vec D[4], *d = out.d, *f = &out.f, *h = &out.h;
   for (int e = 0; e < 3; e++) d[e] = length_between(all(i->x[e]), at[e], k->unit);
   const vec ai = all(i->a), aj = at[3], r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
   const vec t = smaller(r2, k->range2) * k->twice - all(1.0);
@@ -146,21 +152,23 @@ INLINE void near_radial(int equal, int ends, int degree, const near_constants *k
     *f -= D[0] - b * D[2];
     *h -= D[1] - b * D[3];
   }
-  if (!ends) return;
+  if (!ends) return out;
   *f = where(r2 <= k->ends2, *f, all(0.0));
   *h = where(r2 <= k->ends2, *h, all(0.0));
+  return out;
 }
 
-/* u += what forces F do to one sphere, d from them to it */
-INLINE void near_add(vec f, vec h, const vec d[3], const vec F[3], vec u[3])
+/* u += what the forces F of the others do to the one */
+INLINE void near_add(const near_pairs *m, const vec F[3], vec u[3])
 {
-  const vec e = h * (d[0] * F[0] + d[1] * F[1] + d[2] * F[2]);
+  const vec *d = m->d, f = m->f, e = m->h * (d[0] * F[0] + d[1] * F[1] + d[2] * F[2]);
   for (int c = 0; c < 3; c++) u[c] = (u[c] + f * F[c]) + e * d[c];
 }
 
-/* u += what one sphere does to those that are d from it the other way */
-INLINE void near_add_of(const near_first *i, vec f, vec h, const vec d[3], vec u[3])
+/* u += what the one does to the others */
+INLINE void near_add_of(const near_first *i, const near_pairs *m, vec u[3])
 {
+  const vec *d = m->d, f = m->f, h = m->h;
   const vec G[3] = {all(i->G[0]), all(i->G[1]), all(i->G[2])};
   const vec g = h * (d[0] * G[0] + d[1] * G[1] + d[2] * G[2]);
   for (int c = 0; c < 3; c++) u[c] = (u[c] + g * d[c]) + f * G[c];
@@ -199,15 +207,14 @@ INLINE void near_bunch_add(int equal, int own, int degree, const near_constants 
                            const vec at[8], vec v[3])
 {
   for (int q = 0; q < b->rows; q++) {
-    vec f, h, d[3];
-    near_radial(equal, BUNCH > 1, degree, k, b->row + q, at, d, &f, &h);
+    near_pairs m = near_radial(equal, BUNCH > 1, degree, k, b->row + q, at);
     if (own) {
       const yes_no behind = (vec) LANEWISE(NUMBER, 0) >= all((real) q);
-      f = where(behind, f, all(0.0));
-      h = where(behind, h, all(0.0));
+      m.f = where(behind, m.f, all(0.0));
+      m.h = where(behind, m.h, all(0.0));
     }
-    near_add(f, h, d, at + 4, b->u[q]);
-    near_add_of(b->row + q, f, h, d, v);
+    near_add(&m, at + 4, b->u[q]);
+    near_add_of(b->row + q, &m, v);
   }
 }
 
