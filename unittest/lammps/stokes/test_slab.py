@@ -1,14 +1,15 @@
 """Boxes that are periodic in two directions, through LAMMPS: above a floor, in a slit, in an open layer. Against sums
 in another code, closed forms, and themselves."""
 import csv
+import functools
 import os
 
 import numpy as np
 import pytest
 
 import model
-from host import allowed
-from system import LammpsError, Spheres, dump_lines, from_restart, input_lines, lmp, read_dump
+from same_end import same_end_on_ranks
+from system import LammpsError, Spheres, from_restart, input_lines, lmp
 from test_wall import pull
 
 ETA = 1 / (6 * np.pi)                    # 6 pi eta = 1
@@ -217,19 +218,10 @@ def script(folder, way, runs, newton="on", begin=None):
     return lines + ["variable fx atom 2*sin(id)", "fix weight all addforce v_fx 0 -1", MOVE] + runs
 
 
-def end_of(folder, way, runs, ranks=1, **options):
-    lmp(folder, script(folder, way, dump_lines("end.dump", 8, "xu yu zu vx vy vz omegax omegay omegaz") + runs,
-                       **options), ranks)
-    return read_dump(str(folder / "end.dump"))[-1][1]
-
-
 @pytest.mark.parametrize("way", WAYS)
 def test_ranks_newton_and_restart_do_not_matter(tmp_path, way):
-    whole = end_of(tmp_path, way, ["run 8"])
-    for ranks, newton in allowed((2, "on"), (4, "off")):
-        assert np.abs(end_of(tmp_path, way, ["run 8"], ranks, newton=newton) - whole).max() < 1e-10
-    lmp(tmp_path, script(tmp_path, way, ["run 3", "write_restart half"]))
-    assert np.abs(end_of(tmp_path, way, ["run 5"], begin="half") - whole).max() < 1e-10
+    same_end_on_ranks(tmp_path, functools.partial(script, tmp_path, way), 8,
+                      "xu yu zu vx vy vz omegax omegay omegaz", before_restart=3)
 
 
 def test_a_layer_moves_by_forces_that_add_up_to_0(simulation):

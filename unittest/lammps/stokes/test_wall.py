@@ -1,13 +1,15 @@
 """Keyword wall: a plane no-slip wall, through LAMMPS, against closed forms, tables of another code and itself
 turned."""
 import csv
+import functools
 import os
 
 import numpy as np
 import pytest
 
 import model
-from host import allowed, at_most
+from host import at_most
+from same_end import same_end_on_ranks
 from system import LammpsError, Spheres, dump_lines, from_restart, input_lines, lmp, read_dump
 
 MOVE = "fix move all stokes_dynamics/overdamped"
@@ -317,20 +319,11 @@ def script(folder, style, runs, newton="on", begin=None):
     return lines + ["variable fx atom 0.4*sin(id)", "fix weight all addforce v_fx 0 -3", MOVE] + runs
 
 
-def end_of(folder, style, runs, ranks=1, **options):
-    lmp(folder, script(folder, style, dump_lines("end.dump", 4, "x y z vx vy vz omegax omegay omegaz") + runs,
-                       **options), ranks)
-    return read_dump(str(folder / "end.dump"))[-1][1]
-
-
 @pytest.mark.parametrize("style", STYLES)
 def test_ranks_newton_and_restart_do_not_matter(tmp_path, style):
-    whole = end_of(tmp_path, style, ["run 4"])
+    whole = same_end_on_ranks(tmp_path, functools.partial(script, tmp_path, style), 4,
+                              "x y z vx vy vz omegax omegay omegaz", before_restart=2)
     assert np.abs(whole[:, :3]).max() > 1
-    for ranks, newton in allowed((2, "on"), (4, "off")):
-        assert np.abs(end_of(tmp_path, style, ["run 4"], ranks, newton=newton) - whole).max() < 1e-10
-    lmp(tmp_path, script(tmp_path, style, ["run 2", "write_restart half"]))
-    assert np.abs(end_of(tmp_path, style, ["run 2"], begin="half") - whole).max() < 1e-10
 
 
 @pytest.mark.parametrize("style", ["cut_off_distance 6", "cut_off_distance 6 taper wendland rotation yes",

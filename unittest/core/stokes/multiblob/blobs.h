@@ -266,6 +266,16 @@ static inline void blobs_add_films(blobs *s, double range, const double *gradien
   free(V), free(f);
 }
 
+/* In open fluid, with films, for blobs_move: M and R are factored. */
+static inline void blobs_ready(blobs *s, const double *gradient)
+{
+  blobs_open(s);
+  blobs_factor(s);
+  blobs_resistance(s);
+  blobs_add_films(s, 1.0, gradient);
+  assert_int_equal(sd_cholesky(s->size, s->R), SD_OK);
+}
+
 /* Velocities V [6 n] of the free spheres under F (NULL: none) in a flow of gradient G (NULL:
  * none), counted from it at each centre; S [6 n] first moments, with those of films. R is
  * factored; L was placed with the same G, or there is none. */

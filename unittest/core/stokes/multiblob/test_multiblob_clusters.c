@@ -38,11 +38,7 @@ static int next_motion(table *t, int load, int at, motion *m)
 static blobs *cluster_of(const motion *m, int points, const double *gradient)
 {
   blobs *s = blobs_create(points, 1, m->n, m->x, m->a);
-  blobs_open(s);
-  blobs_factor(s);
-  blobs_resistance(s);
-  blobs_add_films(s, 1.0, gradient);
-  assert_int_equal(sd_cholesky(s->size, s->R), SD_OK);
+  blobs_ready(s, gradient);
   return s;
 }
 

@@ -59,11 +59,7 @@ static void loop_is_dense_algebra(void **state)
   tie_with_films(f, &A);
   assert_int_equal(move(f, &A, F, 0, 1e-10), SD_OK);
   blobs *s = blobs_create(12, 1, 8, x, a);
-  blobs_open(s);
-  blobs_factor(s);
-  blobs_resistance(s);
-  blobs_add_films(s, 1.0, NULL);
-  assert_int_equal(sd_cholesky(s->size, s->R), SD_OK);
+  blobs_ready(s, NULL);
   blobs_move(s, F, NULL, V, NULL);
   CHECK_NEAR(off_by(f->V, V, 48), 0.0, 1e-8);
   for (int i = 0; i < 48; i++) CHECK_NEAR(f->exerted[i], F[i], 1e-8);

@@ -15,11 +15,7 @@ static blobs *pair_along(const double d[3], double a2, double xi, const double *
   const double x[6] = {0, 0, 0, R * d[0], R * d[1], R * d[2]};
   blobs *s = blobs_create(12, 1, 2, x, a);
   s->floor = fmin(xi, 1e-3);
-  blobs_open(s);
-  blobs_factor(s);
-  blobs_resistance(s);
-  blobs_add_films(s, 1.0, gradient);
-  assert_int_equal(sd_cholesky(s->size, s->R), SD_OK);
+  blobs_ready(s, gradient);
   return s;
 }
 
