@@ -42,10 +42,31 @@ static int gr_allocate(sd_grid *g)
   g->slab = calloc((size_t) sd_grid_own(g, SD_SHARED_X) + 1, sizeof(void *));
   g->beside = make_plane(g);
   g->counts = calloc(6 * (size_t) g->ranks, sizeof(int));
-  return ok && g->slab && g->beside && g->counts;
+  g->x_forth = calloc((size_t) sd_grid_own(g, SD_SHARED_Z) + 1, sizeof(void *));
+  g->x_back = calloc((size_t) sd_grid_own(g, SD_SHARED_Z) + 1, sizeof(void *));
+  return ok && g->slab && g->beside && g->counts && g->x_forth && g->x_back;
 }
 
-sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, int waves, size_t bytes,
+/* Who has which waves */
+static int share_waves(sd_grid *g, const int *waves)
+{
+  const size_t lines = (size_t) g->size[1];
+  for (int y = 0; y < g->size[1]; y++) g->waves = waves[y] > g->waves ? waves[y] : g->waves;
+  g->columns = sd_grid_columns(g, 0);
+  g->rows = g->ranks / g->columns;
+  g->first_y = malloc(sizeof(int) * ((size_t) g->rows + 1));
+  g->before = calloc(lines + 1, sizeof(long));
+  if (!g->first_y || !g->before) return 0;
+  sd_grid_share_waves(g, waves);
+  for (int k = 0; k < 4; k++) sd_grid_range_of(g, k, g->me, g->own[k]);
+  for (int y = 0; y < g->size[1]; y++) {
+    const int *z = g->own[SD_SHARED_Z], end = waves[y] < z[1] ? waves[y] : z[1];
+    g->before[y + 1] = g->before[y] + (end > z[0] ? end - z[0] : 0);
+  }
+  return 1;
+}
+
+sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, const int *waves, size_t bytes,
                          const sd_world *world)
 {
   sd_grid_free(g);
@@ -61,11 +82,7 @@ sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, int w
     g->size[d] = size[d];
     g->occupied[d] = occupied[d];
   }
-  g->waves = waves;
-  g->columns = sd_grid_columns(g, 0);
-  g->rows = g->ranks / g->columns;
-  for (int k = 0; k < 4; k++) sd_grid_range_of(g, k, g->me, g->own[k]);
-  if (gr_allocate(g) && sd_grid_count_turns(g) && g->fields->plan(g)) return SD_OK;
+  if (share_waves(g, waves) && gr_allocate(g) && sd_grid_count_turns(g) && g->fields->plan(g)) return SD_OK;
   sd_grid_free(g);
   return SD_ENOMEMORY;
 }
@@ -79,6 +96,10 @@ void sd_grid_free(sd_grid *g)
   }
   free(g->height);
   fftw_free(g->beside);
+  free(g->x_forth);
+  free(g->x_back);
+  free(g->first_y);
+  free(g->before);
   free(g->slab);
   free(g->spare);
   free(g->brick);

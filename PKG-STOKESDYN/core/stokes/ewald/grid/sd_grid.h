@@ -17,7 +17,8 @@
  * transformed where they have come in. Messages go only to ranks that something is for.
  *
  * An open grid is twice as large as the part of it that holds something; what is known to be 0, or
- * is not asked for, is not transformed. */
+ * is not asked for, is not transformed. Of waves that a multiplication leaves, those of z may be fewer
+ * where y is large; the others take no part in the turn in columns, nor in transforms along x. */
 #ifndef SD_GRID_H
 #define SD_GRID_H
 
@@ -51,9 +52,13 @@ typedef struct {
   size_t bytes;
   const struct sd_grid_fields *fields;
   const struct sd_grid_kernels *kernels;
-  /* points of the transform, of its occupied part, and wave numbers along z that are not 0 */
+  /* points of the transform, of its occupied part, and wave numbers along z that are not 0 at every y */
   int size[3], occupied[3], waves;
   int rows, columns;
+  /* [rows + 1] where the wave numbers of y of each row begin; [size y + 1] the waves of our z that are left
+   * at all y before this one */
+  int *first_y;
+  long *before;
   /* this rank's part of each sd_grid_part: first and end */
   int own[4][2];
   /* three planes at work, of points or of wave numbers, and one beside them */
@@ -65,8 +70,8 @@ typedef struct {
   void **slab;
   double *spare;
   size_t spare_room;
-  /* FFTW's, of lines along z, y and x forth and back */
-  void *z_forth, *z_back, *y_forth, *y_back, *x_forth, *x_back;
+  /* FFTW's, of lines along z, y and x forth and back; along x [our z + 1] of so many lines, NULL: of none */
+  void *z_forth, *z_back, *y_forth, *y_back, **x_forth, **x_back;
   /* brick: first point and number of points; rows along z of 3 numbers a point */
   int lo[3], n[3];
   long row, layer;
@@ -90,15 +95,16 @@ typedef struct {
   size_t message_room[2];
 } sd_grid;
 
-/* Multiplies the three fields at the wave vectors of one y and our z: plane [3][size x][depth]
- * complex. With heights three more, plane [6]: of each field times the height; and of what comes of
- * these the product with the height is added to what comes of the first three. */
-typedef void sd_grid_multiply(void *ctx, int y, void *const *plane);
+/* Multiplies the three fields at the wave vectors of one y and the first `depth` of our z, those that are
+ * left there: plane [3][size x][depth] complex. With heights three more, plane [6]: of each field times the
+ * height; and of what comes of these the product with the height is added to what comes of the first
+ * three. */
+typedef void sd_grid_multiply(void *ctx, int y, int depth, void *const *plane);
 
-/* Rows, columns and plans; waves: so many wave numbers 0 ... along z are left by a multiplication, at most
- * half of size[2] and one more; bytes: of a double, or of a float. SD_OK; SD_ENOMEMORY, also for turns of
- * more numbers than an int counts. */
-sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, int waves, size_t bytes,
+/* Rows, columns and plans; waves [size y]: so many wave numbers 0 ... along z are left by a multiplication at
+ * this y, at most half of size[2] and one more; bytes: of a double, or of a float. SD_OK; SD_ENOMEMORY, also
+ * for turns of more numbers than an int counts. */
+sd_status sd_grid_create(sd_grid *g, const int *size, const int *occupied, const int *waves, size_t bytes,
                          const sd_world *world);
 
 /* From now on with heights, one for each plane of x [occupied x]. SD_OK or SD_ENOMEMORY. */

@@ -15,7 +15,19 @@ typedef FFT(complex) waves;
 
 /* --- plans --- */
 
-/* Our lines of an x plane along z, two as one; all lines at our z along y to the slab; all x at our z along x. FFTW
+/* All x at so many of our z along x, forth and back */
+static int plan_x(sd_grid *g, int depth)
+{
+  waves *plane = g->plane[0], *beside = g->beside;
+  if (depth == 0 || g->x_forth[depth]) return 1;
+  g->x_forth[depth] = FFT(plan_many_dft)(1, g->size, depth, beside, NULL, depth, 1, plane, NULL, depth, 1,
+                                         FFTW_FORWARD, FFTW_ESTIMATE);
+  g->x_back[depth] = FFT(plan_many_dft)(1, g->size, depth, plane, NULL, depth, 1, beside, NULL, depth, 1,
+                                        FFTW_BACKWARD, FFTW_ESTIMATE);
+  return g->x_forth[depth] && g->x_back[depth];
+}
+
+/* Our lines of an x plane along z, two as one; all lines at our z along y to the slab; then along x. FFTW
  * takes half as long for complex lines as for the real ones in them, and less from one place to another than in one.
  * FFTW_ESTIMATE: measured plans differ from run to run, and so do their last bits. */
 static int plan(sd_grid *g)
@@ -33,18 +45,24 @@ static int plan(sd_grid *g)
                                   FFTW_FORWARD, how);
   g->y_back = FFT(plan_many_dft)(1, size + 1, depth, slab, NULL, depth, 1, plane, NULL, depth, 1,
                                  FFTW_BACKWARD, how);
-  g->x_forth = FFT(plan_many_dft)(1, size, depth, beside, NULL, depth, 1, plane, NULL, depth, 1,
-                                  FFTW_FORWARD, how);
-  g->x_back = FFT(plan_many_dft)(1, size, depth, plane, NULL, depth, 1, beside, NULL, depth, 1,
-                                 FFTW_BACKWARD, how);
-  return g->z_forth && g->z_back && g->y_forth && g->y_back && g->x_forth && g->x_back;
+  int ok = g->z_forth && g->z_back && g->y_forth && g->y_back;
+  for (int y = g->own[SD_SHARED_Y][0]; y < g->own[SD_SHARED_Y][1] && ok; y++) ok = plan_x(g, sd_grid_depth(g, y));
+  return ok;
+}
+
+static void forget_plan(void *plan)
+{
+  if (plan) FFT(destroy_plan)(plan);
 }
 
 static void forget(sd_grid *g)
 {
-  void *const plans[] = {g->z_forth, g->z_back, g->y_forth, g->y_back, g->x_forth, g->x_back};
-  for (int k = 0; k < 6; k++)
-    if (plans[k]) FFT(destroy_plan)(plans[k]);
+  void *const plans[] = {g->z_forth, g->z_back, g->y_forth, g->y_back};
+  for (int k = 0; k < 4; k++) forget_plan(plans[k]);
+  for (int d = 0; d <= sd_grid_own(g, SD_SHARED_Z) && g->x_forth && g->x_back; d++) {
+    forget_plan(g->x_forth[d]);
+    forget_plan(g->x_back[d]);
+  }
 }
 
 /* --- bricks and planes of points --- */
@@ -188,18 +206,22 @@ static void copy_depths(const sd_grid *g, int c, int x, real *message, int to_pl
 }
 
 /* The turn in a column, from x to y planes: from each rank to each a box of wave numbers [3][its
- * x][its y][z]. Rows y of other ranks in our plane x, to the message or from it */
+ * x][its y][z that are left]. Rows y of other ranks in our plane x, to the message or from it */
 static void copy_rows(const sd_grid *g, int c, int x, real *message, int to_slab)
 {
-  const long planes = sd_grid_own(g, SD_SHARED_X), row = 2L * sd_grid_own(g, SD_SHARED_Z);
+  const long planes = sd_grid_own(g, SD_SHARED_X);
   for (int r = g->me % g->columns; r < g->rows * g->columns; r += g->columns) {
-    int y[2];
+    int range[2];
     if (r == g->me) continue;
-    sd_grid_range_of(g, SD_SHARED_Y, r, y);
-    const long rows = y[1] - y[0];
-    copy((real *) slab_row(g, c, x, y[0]),
-         message + (c * planes + x - g->own[SD_SHARED_X][0]) * rows * row, rows * row, to_slab);
-    message += 3 * planes * rows * row;
+    sd_grid_range_of(g, SD_SHARED_Y, r, range);
+    const long numbers = 2 * sd_grid_waves_of(g, r);
+    real *box = message + (c * planes + x - g->own[SD_SHARED_X][0]) * numbers;
+    for (int y = range[0]; y < range[1]; y++) {
+      const long row = 2L * sd_grid_depth(g, y);
+      copy((real *) slab_row(g, c, x, y), box, row, to_slab);
+      box += row;
+    }
+    message += 3 * planes * numbers;
   }
 }
 
@@ -207,7 +229,8 @@ static void copy_rows(const sd_grid *g, int c, int x, real *message, int to_slab
  * or from it */
 static void copy_plane(const sd_grid *g, int c, int y, real *message, int to_beside)
 {
-  const long row = 2L * sd_grid_own(g, SD_SHARED_Z), planes = sd_grid_own(g, SD_SHARED_Y);
+  const long row = 2L * sd_grid_depth(g, y), numbers = 2 * sd_grid_waves_of(g, g->me);
+  const long at = 2 * (g->before[y] - g->before[g->own[SD_SHARED_Y][0]]);
   real *beside = (real *) g->beside;
   for (int r = g->me % g->columns; r < g->rows * g->columns; r += g->columns) {
     int x[2];
@@ -215,24 +238,32 @@ static void copy_plane(const sd_grid *g, int c, int y, real *message, int to_bes
     const long rows = x[1] - x[0];
     for (long k = 0; k < rows; k++, beside += row)
       copy(beside,
-           r == g->me ? (real *) slab_row(g, c, x[0] + (int) k, y)
-                      : message + ((c * rows + k) * planes + y - g->own[SD_SHARED_Y][0]) * row,
-           row, to_beside);
-    if (r != g->me) message += 3 * rows * planes * row;
+           r == g->me ? (real *) slab_row(g, c, x[0] + (int) k, y) : message + (c * rows + k) * numbers + at, row,
+           to_beside);
+    if (r != g->me) message += 3 * rows * numbers;
   }
 }
 
-/* Rows that hold nothing, at our z */
-static void clear_rows(const sd_grid *g, waves *rows, int from, int end)
+/* Rows of `depth` that hold nothing */
+static void clear_rows(waves *rows, int from, int end, int depth)
 {
-  const size_t depth = (size_t) sd_grid_own(g, SD_SHARED_Z);
-  memset(rows + (size_t) from * depth, 0, sizeof(waves) * (size_t) (end - from) * depth);
+  memset(rows + (long) from * depth, 0, sizeof(waves) * (size_t) (end - from) * (size_t) depth);
+}
+
+/* Waves that are not left, of plane x of the slab */
+static void clear_beyond(const sd_grid *g, int c, int x)
+{
+  const int all = sd_grid_own(g, SD_SHARED_Z);
+  for (int y = 0; y < g->size[1]; y++) {
+    const int depth = sd_grid_depth(g, y);
+    memset(slab_row(g, c, x, y) + depth, 0, sizeof(waves) * (size_t) (all - depth));
+  }
 }
 
 /* A plane along y to the slab, or back */
 static void forth_along_y(sd_grid *g, int c, int x, real *message)
 {
-  clear_rows(g, g->plane[c], g->occupied[1], g->size[1]);
+  clear_rows(g->plane[c], g->occupied[1], g->size[1], sd_grid_own(g, SD_SHARED_Z));
   FFT(execute_dft)(g->y_forth, g->plane[c], slab_row(g, c, x, 0));
   copy_rows(g, c, x, message, 0);
 }
@@ -240,40 +271,40 @@ static void forth_along_y(sd_grid *g, int c, int x, real *message)
 static void back_along_y(sd_grid *g, int c, int x, real *message)
 {
   copy_rows(g, c, x, message, 1);
+  clear_beyond(g, c, x);
   FFT(execute_dft)(g->y_back, slab_row(g, c, x, 0), g->plane[c]);
 }
 
 /* Rows of `beside` times their heights, along x to `raised` */
-static void raise_rows(sd_grid *g, int c)
+static void raise_rows(sd_grid *g, int c, int depth)
 {
-  const long row = 2L * sd_grid_own(g, SD_SHARED_Z);
+  const long row = 2L * depth;
   real *beside = (real *) g->beside;
   for (int x = 0; x < g->occupied[0]; x++)
     for (long k = 0; k < row; k++) beside[x * row + k] *= (real) g->height[x];
-  FFT(execute_dft)(g->x_forth, g->beside, g->raised[c]);
+  FFT(execute_dft)(g->x_forth[depth], g->beside, g->raised[c]);
 }
 
 /* `raised` back along x, and its product with the heights to `beside`; plane c is free. */
-static void add_raised(sd_grid *g, int c)
+static void add_raised(sd_grid *g, int c, int depth)
 {
-  const long row = 2L * sd_grid_own(g, SD_SHARED_Z);
+  const long row = 2L * depth;
   real *beside = (real *) g->beside;
   const real *raised = (const real *) g->plane[c];
-  FFT(execute_dft)(g->x_back, g->raised[c], g->plane[c]);
+  FFT(execute_dft)(g->x_back[depth], g->raised[c], g->plane[c]);
   for (int x = 0; x < g->occupied[0]; x++)
     for (long k = 0; k < row; k++) beside[x * row + k] += (real) g->height[x] * raised[x * row + k];
 }
 
 /* What a sweep starts from, as long as it is there, and what they make of it */
-static void keep_for_sweep(sd_grid *g, int c)
+static void keep_for_sweep(sd_grid *g, int c, int depth)
 {
-  const size_t row = 2 * (size_t) sd_grid_own(g, SD_SHARED_Z);
-  memcpy(g->raised[c], g->beside, sizeof(real) * row * (size_t) g->occupied[0]);
+  memcpy(g->raised[c], g->beside, sizeof(waves) * (size_t) depth * (size_t) g->occupied[0]);
 }
 
-static void add_sweep(sd_grid *g, int c)
+static void add_sweep(sd_grid *g, int c, int depth)
 {
-  const long numbers = 2L * sd_grid_own(g, SD_SHARED_Z) * g->occupied[0];
+  const long numbers = 2L * depth * g->occupied[0];
   real *restrict beside = (real *) g->beside;
   const real *restrict swept = (const real *) g->raised[c];
   for (long k = 0; k < numbers; k++) beside[k] += swept[k];
@@ -282,22 +313,24 @@ static void add_sweep(sd_grid *g, int c)
 /* One y plane: along x, the product, back along x. It stays in the cache meanwhile. */
 static void through_plane(sd_grid *g, int y, sd_grid_multiply *multiply, void *ctx, real *message)
 {
+  const int depth = sd_grid_depth(g, y);
   void *planes[6];
+  if (depth == 0) return;
   for (int c = 0; c < 3; c++) {
     planes[c] = g->plane[c];
     planes[3 + c] = g->raised[c];
     copy_plane(g, c, y, message, 1);
-    clear_rows(g, g->beside, g->occupied[0], g->size[0]);
-    FFT(execute_dft)(g->x_forth, g->beside, g->plane[c]);
-    if (g->height) raise_rows(g, c);
-    if (g->sweep) keep_for_sweep(g, c);
+    clear_rows(g->beside, g->occupied[0], g->size[0], depth);
+    FFT(execute_dft)(g->x_forth[depth], g->beside, g->plane[c]);
+    if (g->height) raise_rows(g, c, depth);
+    if (g->sweep) keep_for_sweep(g, c, depth);
   }
-  multiply(ctx, y, planes);
+  multiply(ctx, y, depth, planes);
   if (g->sweep) g->sweep(g->sweep_ctx, y, (double *const *) (planes + 3));
   for (int c = 0; c < 3; c++) {
-    FFT(execute_dft)(g->x_back, g->plane[c], g->beside);
-    if (g->height) add_raised(g, c);
-    if (g->sweep) add_sweep(g, c);
+    FFT(execute_dft)(g->x_back[depth], g->plane[c], g->beside);
+    if (g->height) add_raised(g, c, depth);
+    if (g->sweep) add_sweep(g, c, depth);
     copy_plane(g, c, y, message, 0);
   }
 }

@@ -19,6 +19,15 @@ void sd_grid_range_of(const sd_grid *g, sd_grid_part what, int rank, int *range)
 int sd_grid_length(const sd_grid *g, sd_grid_part what, int rank);
 /* The length of this rank's */
 int sd_grid_own(const sd_grid *g, sd_grid_part what);
+/* Rows share the wave numbers of y so that the waves [size y] at them are even: g->first_y */
+void sd_grid_share_waves(sd_grid *g, const int *waves);
+/* Waves of our z that are left at the y of a rank of our column */
+long sd_grid_waves_of(const sd_grid *g, int rank);
+/* Of our z those that are left at y */
+static inline int sd_grid_depth(const sd_grid *g, int y)
+{
+  return (int) (g->before[y + 1] - g->before[y]);
+}
 
 /* --- messages: sd_grid.counts --- */
 

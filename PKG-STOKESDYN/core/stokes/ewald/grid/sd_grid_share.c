@@ -44,10 +44,10 @@ int sd_grid_columns(const sd_grid *g, int d)
   return best;
 }
 
-/* What a rank has of `all` planes: first and end. Rows share those of X and Y, columns the others. */
+/* What a rank has of `all` planes: first and end. Rows share those of X, columns the others. */
 void sd_grid_range(int all, sd_grid_part what, int rank, int rows, int columns, int *range)
 {
-  const int by_row = what == SD_SHARED_X || what == SD_SHARED_Y;
+  const int by_row = what == SD_SHARED_X;
   const int part = by_row ? rank / columns : rank % columns, parts = by_row ? rows : columns;
   range[0] = range[1] = 0;
   if (rank >= rows * columns) return;
@@ -57,8 +57,21 @@ void sd_grid_range(int all, sd_grid_part what, int rank, int rows, int columns, 
 
 void sd_grid_range_of(const sd_grid *g, sd_grid_part what, int rank, int *range)
 {
-  const int all[] = {g->occupied[0], g->occupied[1], g->size[1], g->waves};
+  const int row = rank / g->columns, all[] = {g->occupied[0], g->occupied[1], g->size[1], g->waves};
   sd_grid_range(all[what], what, rank, g->rows, g->columns, range);
+  if (what != SD_SHARED_Y || row >= g->rows) return;
+  range[0] = g->first_y[row];
+  range[1] = g->first_y[row + 1];
+}
+
+void sd_grid_share_waves(sd_grid *g, const int *waves)
+{
+  long all = 0, before = 0;
+  for (int y = 0; y < g->size[1]; y++) all += waves[y];
+  for (int row = 0, y = 0; row <= g->rows; row++) {
+    while (y < g->size[1] && (before + waves[y]) * g->rows <= all * row) before += waves[y++];
+    g->first_y[row] = row < g->rows ? y : g->size[1];
+  }
 }
 
 int sd_grid_length(const sd_grid *g, sd_grid_part what, int rank)
@@ -71,6 +84,13 @@ int sd_grid_length(const sd_grid *g, sd_grid_part what, int rank)
 int sd_grid_own(const sd_grid *g, sd_grid_part what)
 {
   return g->own[what][1] - g->own[what][0];
+}
+
+long sd_grid_waves_of(const sd_grid *g, int rank)
+{
+  int y[2];
+  sd_grid_range_of(g, SD_SHARED_Y, rank, y);
+  return g->before[y[1]] - g->before[y[0]];
 }
 
 /* --- messages --- */
@@ -89,7 +109,7 @@ int sd_grid_count(const sd_grid *g, int which, int rank, long numbers, long *all
 int sd_grid_count_turns(const sd_grid *g)
 {
   const long planes = sd_grid_own(g, SD_SHARED_X), lines = sd_grid_own(g, SD_SHARED_LINES);
-  const long rows = sd_grid_own(g, SD_SHARED_Y), depth = sd_grid_own(g, SD_SHARED_Z);
+  const long waves = sd_grid_waves_of(g, g->me), depth = sd_grid_own(g, SD_SHARED_Z);
   long all[4] = {0};
   int ok = 1;
   for (int r = 0; r < g->rows * g->columns && ok; r++) {
@@ -98,8 +118,8 @@ int sd_grid_count_turns(const sd_grid *g)
       ok = sd_grid_count(g, ROW_TO, r, 6 * planes * lines * sd_grid_length(g, SD_SHARED_Z, r), all) &&
           sd_grid_count(g, ROW_FROM, r, 6 * planes * sd_grid_length(g, SD_SHARED_LINES, r) * depth, all + 1);
     if (r % g->columns == g->me % g->columns)
-      ok = ok && sd_grid_count(g, COLUMN_TO, r, 6 * planes * sd_grid_length(g, SD_SHARED_Y, r) * depth, all + 2) &&
-          sd_grid_count(g, COLUMN_FROM, r, 6 * sd_grid_length(g, SD_SHARED_X, r) * rows * depth, all + 3);
+      ok = ok && sd_grid_count(g, COLUMN_TO, r, 6 * planes * sd_grid_waves_of(g, r), all + 2) &&
+          sd_grid_count(g, COLUMN_FROM, r, 6 * sd_grid_length(g, SD_SHARED_X, r) * waves, all + 3);
   }
   return ok;
 }

@@ -67,15 +67,27 @@ static sd_status raise_grid(sd_ewald_waves *w)
   return status;
 }
 
-/* Wave numbers m along the last direction of the frame that the sum has, in whole vectors of FFTW: |k| is at least
- * 2 pi m over the edge, and ends at the band; the wave of half as many as points has no partner. */
-static int waves_along_z(const sd_ewald *e, int points)
+/* Wave numbers n along the last direction of the frame that end within the band b, with m along the one before:
+ * k has the products 2 pi m and 2 pi n with these edges p and q, so that (2 pi)^-2 k^2 is at least
+ * (qq m^2 - 2 pq m n + pp n^2)/(pp qq - pq^2). */
+static double waves_in_band(const sd_ewald *e, int m)
+{
+  const double *tilt = e->box.tilt, *edge = e->box.edge;
+  const double pp = tilt[0] * tilt[0] + edge[1] * edge[1], pq = tilt[0] * tilt[1] + edge[1] * tilt[2];
+  const double qq = tilt[1] * tilt[1] + tilt[2] * tilt[2] + edge[2] * edge[2];
+  const double b = e->band / (2.0 * SD_PI), inside = pp * b * b - (double) m * m;
+  return inside < 0.0 ? 0.0 : fmax(0.0, 1.0 + floor((pq * m + sqrt((pp * qq - pq * pq) * inside)) / pp));
+}
+
+/* Of the grid's wave numbers along z those that the sum has at y, in whole vectors of FFTW; the wave of half as many
+ * as points has no partner. */
+static int waves_at(const sd_ewald *e, const int *size, int y)
 {
   enum { VECTOR = 4 };
-  const int half = points / 2 + 1;
+  const int half = size[2] / 2 + 1;
   if (!e->box.periodic || e->slab.planes > 0) return half;
-  double waves = (points + 1) / 2;
-  if (e->band > 0.0) waves = fmin(waves, 1.0 + floor(e->band * sd_ewald_edge_length(&e->box, 2) / (2.0 * SD_PI)));
+  double waves = (size[2] + 1) / 2;
+  if (e->band > 0.0) waves = fmin(waves, waves_in_band(e, y < (size[1] + 1) / 2 ? y : y - size[1]));
   const int whole = ((int) waves + VECTOR - 1) / VECTOR * VECTOR;
   return whole < half ? whole : half;
 }
@@ -88,8 +100,11 @@ static sd_status make_grid(sd_ewald_waves *w, const sd_world *world)
   int size[3];
   const int occupied[3] = {e->slab.planes > 0 ? e->slab.planes : e->grid[0], e->grid[1], e->grid[2]};
   for (int d = 0; d < 3; d++) size[d] = (e->box.periodic ? 1 : 2) * e->grid[d];
+  int *waves = malloc(sizeof(int) * (size_t) size[1]);
+  for (int y = 0; y < size[1] && waves; y++) waves[y] = waves_at(e, size, y);
   sd_status status =
-      sd_grid_create(&w->grid, size, occupied, waves_along_z(e, size[2]), w->kernels->bytes, world);
+      waves ? sd_grid_create(&w->grid, size, occupied, waves, w->kernels->bytes, world) : SD_ENOMEMORY;
+  free(waves);
   if (status == SD_OK)
     status = sd_wave_create(&w->wave, e, w->kernels, size, w->grid.own[SD_SHARED_Y],
                             w->grid.own[SD_SHARED_Z]);

@@ -169,32 +169,32 @@ static const void *periodic_entry(const sd_wave *w, int x, int y)
   return sd_at_number(w->table, w->kernels->bytes, ((long) (y - w->y0) * w->size[0] + x) * w->depth);
 }
 
-/* Row x of the three fields of a plane */
-static void rows_at(const sd_wave *w, void *const *plane, int x, void **row)
+/* Row x of the three fields of a plane, whose rows have `depth` waves */
+static void rows_at(const sd_wave *w, void *const *plane, int x, int depth, void **row)
 {
-  for (int c = 0; c < 3; c++) row[c] = sd_at_number(plane[c], w->kernels->bytes, 2L * x * w->depth);
+  for (int c = 0; c < 3; c++) row[c] = sd_at_number(plane[c], w->kernels->bytes, 2L * x * depth);
 }
 
 /* That row of the three fields, times B and the projection */
-static void wa_periodic_row(const sd_wave *w, int x, int y, const void *B, void *const *row)
+static void wa_periodic_row(const sd_wave *w, int x, int y, int depth, const void *B, void *const *row)
 {
   const int mx = wave_wave_number(x, w->size[0]), my = wave_wave_number(y, w->size[1]);
   double k[3];
   for (int c = 0; c < 3; c++) k[c] = mx * w->k[0][c] + my * w->k[1][c];
   k[2] += w->z0 * w->k[2][2];
-  w->kernels->periodic_row(row, B, k, w->k[2][2], w->depth);
+  w->kernels->periodic_row(row, B, k, w->k[2][2], depth);
 }
 
-void sd_wave_multiply_root(void *ctx, int y, void *const *plane)
+void sd_wave_multiply_root(void *ctx, int y, int depth, void *const *plane)
 {
   const sd_wave *w = ctx;
   const double points = (double) w->size[0] * w->size[1] * w->size[2];
   for (int x = 0; x < w->size[0]; x++) {
     const double *B = periodic_entry(w, x, y);
     void *row[3];
-    rows_at(w, plane, x, row);
-    for (int m = 0; m < w->depth; m++) w->roots[m] = sqrt(B[m] / points);
-    wa_periodic_row(w, x, y, w->roots, row);
+    rows_at(w, plane, x, depth, row);
+    for (int m = 0; m < depth; m++) w->roots[m] = sqrt(B[m] / points);
+    wa_periodic_row(w, x, y, depth, w->roots, row);
   }
 }
 
@@ -214,7 +214,7 @@ static sd_image_rows rows_above(const sd_wave *w, int x, int y, void *const *pla
   return r;
 }
 
-void sd_wave_multiply(void *ctx, int y, void *const *plane)
+void sd_wave_multiply(void *ctx, int y, int depth, void *const *plane)
 {
   const sd_wave *w = ctx;
   for (int x = 0; x <= w->size[0] / 2 && w->images; x++) {
@@ -222,14 +222,14 @@ void sd_wave_multiply(void *ctx, int y, void *const *plane)
     w->kernels->image_rows(&r);
   }
   if (w->images) return;
-  const int depth = w->depth, half_x = w->size[0] / 2 + 1;
+  const int half_x = w->size[0] / 2 + 1;
   const int my = wave_wave_number(y, w->size[1]);
   for (int x = 0; x < w->size[0]; x++) {
     const int mx = wave_wave_number(x, w->size[0]);
     void *row[3];
-    rows_at(w, plane, x, row);
+    rows_at(w, plane, x, depth, row);
     if (w->periodic)
-      wa_periodic_row(w, x, y, periodic_entry(w, x, y), row);
+      wa_periodic_row(w, x, y, depth, periodic_entry(w, x, y), row);
     else {
       const long entry = (long) (abs(my) - w->first_row) * half_x + abs(mx);
       const void *K = sd_at_number(w->table, w->kernels->bytes, entry * 6 * depth);

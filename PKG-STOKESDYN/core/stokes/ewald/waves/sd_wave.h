@@ -42,12 +42,12 @@ sd_status sd_wave_create(sd_wave *w, const sd_ewald *e, const struct sd_ewald_ke
                          const int *size, const int *y, const int *z);
 
 /* As sd_grid_multiply: ctx is an sd_wave. */
-void sd_wave_multiply(void *ctx, int y, void *const *plane);
+void sd_wave_multiply(void *ctx, int y, int depth, void *const *plane);
 
 /* The same of a periodic box, of doubles alone, with the root of B over that of the number of points: applied
  * to the transform of independent standard normal numbers, and transformed back, it gives velocities on the
  * grid whose covariance is what sd_wave_multiply convolves with. */
-void sd_wave_multiply_root(void *ctx, int y, void *const *plane);
+void sd_wave_multiply_root(void *ctx, int y, int depth, void *const *plane);
 
 void sd_wave_free(sd_wave *w);
 

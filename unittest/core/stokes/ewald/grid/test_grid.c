@@ -8,7 +8,7 @@
 #include <pthread.h>
 #include <string.h>
 
-enum { MOST_RANKS = 16 };
+enum { MOST_RANKS = 16, MOST_LINES = 12 };
 
 typedef struct {
   pthread_barrier_t barrier;
@@ -49,19 +49,26 @@ static sd_status exchange(void *ctx, const double *send, const int *to, double *
   return SD_OK;
 }
 
-/* Any function of the wave vector that couples the fields and leaves the first `waves` along z */
-static void multiply(void *ctx, int y, void *const *plane)
+/* Waves that are left at y, of so many: fewer for larger wave numbers, down to none */
+static int left_at(int y, int size, int waves)
+{
+  const int m = y < size - y ? y : size - y, left = waves - 2 * m * m / size;
+  return left > 0 ? left : 0;
+}
+
+/* Any function of the wave vector that couples the fields and leaves some of them */
+static void multiply(void *ctx, int y, int depth, void *const *plane)
 {
   const rank *r = ctx;
   const sd_grid *g = &r->grid;
-  const int *z = g->own[SD_SHARED_Z];
+  const int z = g->own[SD_SHARED_Z][0], end = left_at(y, g->size[1], r->waves);
   long k = 0;
   for (int x = 0; x < g->size[0]; x++)
-    for (int w = z[0]; w < z[1]; w++)
+    for (int w = z; w < z + depth; w++)
       for (int part = 0; part < 2; part++, k++) {
         double v[3];
         for (int c = 0; c < 3; c++) v[c] = sd_number(plane[c], g->bytes, k);
-        const double a = 1.0 / (1.0 + x + 2 * y + 3 * w), left = w < r->waves;
+        const double a = 1.0 / (1.0 + x + 2 * y + 3 * w), left = w < end;
         sd_put_number(plane[0], g->bytes, k, left * (a * v[0] + 0.1 * v[1]));
         sd_put_number(plane[1], g->bytes, k, left * (a * v[1] - 0.2 * v[2]));
         sd_put_number(plane[2], g->bytes, k, left * (a * v[2] + 0.3 * v[0]));
@@ -135,7 +142,8 @@ static void run(const layout *l, size_t bytes, int ranks, const int *bricks, int
     r[p].waves = l->waves;
     const sd_world world = {.ctx = r + p, .me = p, .ranks = ranks, .exchange = exchange};
     sd_grid *g = &r[p].grid;
-    const int waves = ranks > 1 ? l->waves : l->size[2] / 2 + 1;
+    int waves[MOST_LINES];
+    for (int y = 0; y < l->size[1]; y++) waves[y] = ranks > 1 ? left_at(y, l->size[1], l->waves) : l->size[2] / 2 + 1;
     assert_int_equal(sd_grid_create(g, l->size, l->occupied, waves, bytes, &world), SD_OK);
     assert_int_equal(sd_grid_place(g, bricks), SD_OK);
     memset(g->brick, 0, bytes * sd_grid_brick_numbers(g));
@@ -196,19 +204,45 @@ static void any_number_of_ranks_is_one(void **state)
 static void ranks_are_not_limited_by_planes(void **state)
 {
   (void) state;
-  const int size[3] = {12, 12, 12};
+  const int size[3] = {12, 12, 12}, waves[12] = {7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7};
   for (int ranks = 1; ranks <= 60; ranks++) {
     sd_grid g = {0};
     int busy = 0, columns = 0;
     for (int me = 0; me < ranks; me++) {
       const sd_world world = {.me = me, .ranks = ranks, .exchange = exchange};
-      assert_int_equal(sd_grid_create(&g, size, size, 7, sizeof(double), &world), SD_OK);
+      assert_int_equal(sd_grid_create(&g, size, size, waves, sizeof(double), &world), SD_OK);
       busy += g.own[SD_SHARED_X][1] > g.own[SD_SHARED_X][0] && g.own[SD_SHARED_LINES][1] > g.own[SD_SHARED_LINES][0];
       columns = g.columns;
       sd_grid_free(&g);
     }
     if (ranks <= 4) assert_int_equal(columns, 1);
     if (ranks >= 18) assert_true(columns > 1 && busy >= 18);
+  }
+}
+
+/* Fewer waves are left where y is large: who has those y has more of them. */
+static void rows_share_the_waves_that_are_left(void **state)
+{
+  (void) state;
+  enum { SIZE = 32, MOST = 16 };
+  const int size[3] = {SIZE, SIZE, SIZE};
+  int waves[SIZE];
+  double all = 0.0;
+  for (int y = 0; y < SIZE; y++) all += waves[y] = left_at(y, SIZE, MOST);
+  for (int ranks = 2; ranks <= 6; ranks++) {
+    sd_grid g = {0};
+    double shared = 0.0;
+    for (int me = 0; me < ranks; me++) {
+      const sd_world world = {.me = me, .ranks = ranks, .exchange = exchange};
+      assert_int_equal(sd_grid_create(&g, size, size, waves, sizeof(double), &world), SD_OK);
+      assert_int_equal(g.columns, 1);
+      const int *y = g.own[SD_SHARED_Y];
+      const double ours = (double) (g.before[y[1]] - g.before[y[0]]);
+      CHECK_NEAR(ours, all / ranks, MOST);
+      shared += ours;
+      sd_grid_free(&g);
+    }
+    assert_true(shared == all);
   }
 }
 
@@ -219,8 +253,11 @@ static void more_numbers_than_an_int_counts_are_no_memory(void **state)
   const int large[3] = {1600, 1600, 1600}, small[3] = {8, 8, 8};
   const sd_world world = {.ranks = 2, .exchange = exchange};
   sd_grid g = {0};
-  assert_int_equal(sd_grid_create(&g, large, large, 801, sizeof(double), &world), SD_ENOMEMORY);
-  assert_int_equal(sd_grid_create(&g, small, small, 5, sizeof(double), &world), SD_OK);
+  int waves[1600];
+  for (int y = 0; y < 1600; y++) waves[y] = 801;
+  assert_int_equal(sd_grid_create(&g, large, large, waves, sizeof(double), &world), SD_ENOMEMORY);
+  for (int y = 0; y < 8; y++) waves[y] = 5;
+  assert_int_equal(sd_grid_create(&g, small, small, waves, sizeof(double), &world), SD_OK);
   const int many = 2400 * 1200, bricks[12] = {0, 0, 0, 1, 1, 1, 0, 0, 0, 8, 8, many * 8};
   g.size[2] = g.occupied[2] = many * 8; /* as if its rows were so long */
   assert_int_equal(sd_grid_place(&g, bricks), SD_ENOMEMORY);
@@ -232,6 +269,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(any_number_of_ranks_is_one),
       cmocka_unit_test(ranks_are_not_limited_by_planes),
+      cmocka_unit_test(rows_share_the_waves_that_are_left),
       cmocka_unit_test(more_numbers_than_an_int_counts_are_no_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
