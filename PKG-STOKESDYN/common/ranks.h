@@ -14,6 +14,11 @@
 #include <type_traits>
 #include <vector>
 
+#ifdef MPI_STUBS
+/* LAMMPS's own MPI for a single rank, to which nobody writes, lacks this. */
+inline int MPI_Probe(int, int, MPI_Comm, MPI_Status *) { return 0; }
+#endif
+
 namespace StokesDyn {
 
 /* A count as MPI takes it: what does not fit is more than a message holds, so there is no memory
@@ -124,7 +129,6 @@ class Post {
   void carry(const double *out, double *in, int width) const
   {
     std::vector<MPI_Request> under_way;
-    const double *own = nullptr;
     double *there = nullptr;
     size_t count = 0;
     for (const Partner &p : partners) {
@@ -136,17 +140,25 @@ class Post {
         MPI_Irecv(in, mpi_count(numbers), MPI_DOUBLE, p.rank, TAG, world, add(under_way));
       in += numbers;
     }
-    for (const Partner &p : partners) {
-      const size_t numbers = (size_t) width * p.out;
-      if (p.rank == me)
-        own = out;
-      else if (p.out > 0)
-        MPI_Isend(const_cast<double *>(out), mpi_count(numbers), MPI_DOUBLE, p.rank, TAG, world,
-                  add(under_way));
-      out += numbers;
-    }
+    const double *own = send(out, width, 1, under_way);
     if (count) std::copy_n(own, count, there);
     wait(under_way);
+  }
+  /* The same where nobody knows yet how many rows come: sets `in`. Every partner hears of every other,
+   * if only that there is nothing. */
+  std::vector<double> deliver(const double *out, int width)
+  {
+    std::vector<MPI_Request> under_way;
+    std::vector<double> in;
+    const double *own = send(out, width, 0, under_way);
+    for (Partner &p : partners)
+      if (p.rank == me) {
+        in.insert(in.end(), own, own + (size_t) width * p.out);
+        p.in = p.out;
+      } else
+        p.in = receive(p.rank, in) / width;
+    wait(under_way);
+    return in;
   }
   /* The same the other way: rows that came go back. */
   Post reversed() const
@@ -159,6 +171,34 @@ class Post {
  private:
   enum { TAG = 7 };
 
+  /* Sends every other partner its rows, if there are so many at least; where this rank's own are, nullptr:
+   * nowhere */
+  const double *send(const double *out, int width, int least, std::vector<MPI_Request> &under_way) const
+  {
+    const double *own = nullptr;
+    for (const Partner &p : partners) {
+      const size_t numbers = (size_t) width * p.out;
+      if (p.rank == me)
+        own = out;
+      else if (p.out >= least)
+        MPI_Isend(const_cast<double *>(out), mpi_count(numbers), MPI_DOUBLE, p.rank, TAG, world,
+                  add(under_way));
+      out += numbers;
+    }
+    return own;
+  }
+  /* What comes next from this rank, behind `in`; how many numbers */
+  int receive(int rank, std::vector<double> &in) const
+  {
+    MPI_Status status;
+    int numbers = 0;
+    const size_t before = in.size();
+    MPI_Probe(rank, TAG, world, &status);
+    MPI_Get_count(&status, MPI_DOUBLE, &numbers);
+    in.resize(before + numbers);
+    MPI_Recv(in.data() + before, numbers, MPI_DOUBLE, rank, TAG, world, &status);
+    return numbers;
+  }
   static MPI_Request *add(std::vector<MPI_Request> &under_way)
   {
     under_way.emplace_back();

@@ -223,6 +223,7 @@ void BodyScene::put_together()
   bodies.loner = loner.data();
   bodies.shaped = shaped.size();
   bodies.body = shaped.data();
+  bodies.none_shaped = !scene.shells && !rigid.settings.on && !slowed_by_wall();
   bodies.spheres = {n, width, whole.data(), arm.data()};
   bodies.points = {n, width, nullptr, nullptr};
   bodies.film_arm = film_arm.empty() ? nullptr : film_arm.data();

@@ -94,7 +94,8 @@ void BodyScene::put_points()
   for (int k = 0; k < n; k++)
     whole_shells[k] = (char) sd_multiblob_mask_is_whole(of_points.spheres.mask + k);
   const double *turn = poses.clumps().empty() ? nullptr : of_points.spheres.turn;    // free ones do not turn
-  faces = {scene.shells->faces(), turn, whole_shells.data(), of_points.spheres.kind,
+  const char *whole_ones = rigid.settings.on ? whole_shells.data() : nullptr;
+  faces = {scene.shells->faces(), turn, whole_ones, of_points.spheres.kind,
            of_points.spheres.first};
   bodies.faces = &faces;
   alone.n = all;

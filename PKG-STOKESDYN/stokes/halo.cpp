@@ -120,7 +120,10 @@ bool Halo::find_around(const Lattice &lattice, double reach, const std::vector<d
   for (int k = 0; k < 8 && lo[0] <= hi[0] && lo[1] <= hi[1] && lo[2] <= hi[2]; k++)
     for (int d = 0; d < 3; d++) corners.push_back(k >> d & 1 ? hi[d] : lo[d]);
   const Block rows = around(lattice, x, f), wanted = around(lattice, corners, of_corners);
-  return find(lattice, reach, rows, wanted, f, true);
+  if (!find(lattice, reach, rows, wanted, f, true)) return false;
+  post.tell();
+  copies = post.rows_in();
+  return true;
 }
 
 bool Halo::find(const Lattice &lattice, double reach, const Block &rows, const Block &wanted,
@@ -146,8 +149,6 @@ bool Halo::find(const Lattice &lattice, double reach, const Block &rows, const B
     if (out && !send_to(p, lattice, f, rows.face, there, itself)) return false;
     post.partners.push_back({p, (int) (sphere.size() - before), 0});
   }
-  post.tell();
-  copies = post.rows_in();
   return true;
 }
 
@@ -207,7 +208,7 @@ void Halo::place(const double h[6], const double *x, double *out) const
 }
 
 void Halo::extend(const double h[6], std::vector<double> &x,
-                  std::initializer_list<std::vector<double> *> columns) const
+                  std::initializer_list<std::vector<double> *> columns)
 {
   const size_t n = x.size() / 3, width = 3 + columns.size();
   outbox.resize(width * sphere.size() + 1);
@@ -217,8 +218,8 @@ void Halo::extend(const double h[6], std::vector<double> &x,
     out += 3;
     for (const auto *column : columns) *out++ = (*column)[sphere[k]];
   }
-  std::vector<double> came(width * copies + 1);
-  post.carry(outbox.data(), came.data(), (int) width);
+  const std::vector<double> came = post.deliver(outbox.data(), (int) width);
+  copies = post.rows_in();
   x.resize(3 * (n + copies));
   for (auto *column : columns) column->resize(n + copies);
   const double *in = came.data();

@@ -37,11 +37,11 @@ class Halo {
   explicit Halo(MPI_Comm world) : post(world) {}
 
   /* Copies of spheres within `reach` of the smallest parallelepiped, with faces as the lattice has
-   * them, that holds this rank's rows x [3n]. On all ranks together. false: more copies of this
-   * rank's spheres than 1e7 and than 1000 for each. */
+   * them, that holds this rank's rows x [3n]; they are there when extend() has brought them. On all ranks
+   * together. false: more copies of this rank's spheres than 1e7 and than 1000 for each. */
   bool find(const Lattice &lattice, double reach, const std::vector<double> &x);
   /* The same within `reach` of what is from lo [3] to hi [3], other on each rank and nothing where
-   * lo > hi; this rank's own spheres are among them. */
+   * lo > hi; this rank's own spheres are among them. They are there at once. */
   bool find_around(const Lattice &lattice, double reach, const std::vector<double> &x,
                    const double lo[3], const double hi[3]);
   void clear();
@@ -57,7 +57,7 @@ class Halo {
 
   /* Behind the rows of x and the columns, those of the copies, in one message to each partner */
   void extend(const double h[6], std::vector<double> &x,
-              std::initializer_list<std::vector<double> *> columns) const;
+              std::initializer_list<std::vector<double> *> columns);
 
   /* The other ranks as the core asks them, of these rows and copies; as long as this halo stands here */
   sd_world ranks() const;

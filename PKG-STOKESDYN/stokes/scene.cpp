@@ -197,18 +197,25 @@ void Scene::place(int n_all_or_copies)
     fail_by(voice.of("set-up of the matrix-vector product by " + std::string(engine->name)), status);
 }
 
-/* The same with the points of the spheres: their rows go where those of the spheres did. */
+/* How the shells of all stand, whose rows go where those of the spheres did; empty where no clump turns any */
+std::vector<double> Scene::turned_shells(int n_all_or_copies)
+{
+  if (!settings.whole) return {};
+  const size_t width = shells->sent_width(), own = width * size();
+  std::vector<double> rows = shells->sent(size()), all(width * n_all_or_copies + 1);
+  if (view() == SD_VIEW_ALL)
+    to_cloud(rows.data(), all.data(), (int) width);
+  else {
+    std::copy_n(rows.begin(), own, all.begin());
+    halo.refresh(rows.data(), &all[own], (int) width);
+  }
+  return all;
+}
+
+/* The same with the points of the spheres */
 void Scene::place_points(int n_all_or_copies, sd_mobility_scene &scene)
 {
-  const int width = shells->sent_width();
-  std::vector<double> rows = shells->sent(size()), all(width * ((size_t) n_all_or_copies + 1));
-  if (view() == SD_VIEW_ALL)
-    to_cloud(rows.data(), all.data(), width);
-  else {
-    std::copy_n(rows.begin(), width * (size_t) size(), all.begin());
-    halo.refresh(rows.data(), &all[width * (size_t) size()], width);
-  }
-  shells->expand(n_all_or_copies, all, view() == SD_VIEW_ALL ? cloud() : local());
+  shells->expand(n_all_or_copies, turned_shells(n_all_or_copies), view() == SD_VIEW_ALL ? cloud() : local());
   scene.n = shells->first_of_rows()[size()];
   scene.n_all = shells->first_of_all()[n_all_or_copies];
   scene.spheres = shells->all();

@@ -271,6 +271,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   void look_for_others(double spheres);
   void gather();
   void place(int n_all_or_copies);
+  std::vector<double> turned_shells(int n_all_or_copies);
   void place_points(int n_all_or_copies, sd_mobility_scene &scene);
   sd_world ranks_of_cloud();
   /* Of each sphere width numbers, or so many for each of its rows, first [n_all + 1] */

@@ -126,17 +126,23 @@ void Shells::find_forms(const sd_multiblob_spheres &s)
   }
 }
 
+/* As they are, with all points */
+void Shells::stand_free(int n, const Places &places, std::vector<double> &turns, Masks &masks) const
+{
+  turns.resize(9 * (size_t) n + 9);
+  masks.resize(n + 1);
+  Masks whole;
+  for (const sd_multiblob &model : models) whole.push_back(sd_multiblob_whole(&model));
+  for (int k = 0; k < n; k++) {
+    masks[k] = whole[places.kind[k]];
+    std::copy_n(UNITY, 9, &turns[9 * (size_t) k]);
+  }
+}
+
 void Shells::free_rows(int n, const double *a)
 {
   find(n, a, of_rows);
-  turn.resize(9 * (size_t) n + 9);
-  mask.resize(n + 1);
-  std::vector<sd_multiblob_mask> whole;
-  for (const sd_multiblob &model : models) whole.push_back(sd_multiblob_whole(&model));
-  for (int k = 0; k < n; k++) {
-    mask[k] = whole[of_rows.kind[k]];
-    std::copy_n(UNITY, 9, &turn[9 * (size_t) k]);
-  }
+  stand_free(n, of_rows, turn, mask);
 }
 
 void Shells::turn_row(int k, const double row[9], const sd_multiblob_mask &there)
@@ -159,10 +165,11 @@ std::vector<double> Shells::sent(int n) const
 void Shells::expand(int n, const std::vector<double> &rows, const sd_spheres &spheres)
 {
   const size_t width = sent_width();
-  std::vector<double> turns(9 * (size_t) n + 9);
-  std::vector<sd_multiblob_mask> there(n + 1);
+  std::vector<double> turns;
+  Masks there;
   find(n, spheres.a, of_all);
-  for (size_t k = 0; k < (size_t) n; k++) {
+  stand_free(n, of_all, turns, there);
+  for (size_t k = 0; k < rows.size() / width; k++) {
     std::copy_n(&rows[width * k], 9, &turns[9 * k]);
     std::memcpy(there[k].word, &rows[width * k + 9], words * sizeof(double));
   }

@@ -96,7 +96,7 @@ class Shells : protected LAMMPS_NS::Pointers {
   /* Turn and mask as they are sent: [sent_width() n] */
   int sent_width() const { return 9 + words; }
   std::vector<double> sent(int n) const;
-  /* Points of n spheres whose rows are given as they are sent */
+  /* Points of n spheres whose rows are given as they are sent; none: all of them are free */
   void expand(int n, const std::vector<double> &rows, const sd_spheres &spheres);
   sd_spheres all() const { return {x.data(), b.data(), w.data()}; }
   const std::vector<int> &first_of_all() const { return of_all.first; }
@@ -119,8 +119,9 @@ class Shells : protected LAMMPS_NS::Pointers {
     std::vector<int> kind, first;
   } of_rows, of_all;
   std::vector<int> forms;
+  typedef std::vector<sd_multiblob_mask> Masks;
   std::vector<double> turn;
-  std::vector<sd_multiblob_mask> mask;
+  Masks mask;
   std::vector<double> x, b, w;
 
   /* Of models[0]: a restart file may say that spheres are unlike before these are made by radius. */
@@ -129,6 +130,7 @@ class Shells : protected LAMMPS_NS::Pointers {
   void add_model(int n, bool half);
   void warn_of_alike(double largest) const;
   void find(int n, const double *a, Places &places) const;
+  void stand_free(int n, const Places &places, std::vector<double> &turns, Masks &masks) const;
   void find_forms(const sd_multiblob_spheres &s);
 };
 

@@ -40,6 +40,8 @@ typedef struct {
   /* bodies of a shape, of the width of the points: lone ... lone + shaped - 1 */
   int shaped;
   const sd_body *body;
+  /* 1: no rank has any of these, and all ranks know it; 0: where that matters they ask each other */
+  int none_shaped;
   /* [bodies] sd_body_known; NULL: all are free */
   const char *known;
   /* Spheres on bodies: width 6, in the model without torques 3. Points on spheres: whole NULL: the

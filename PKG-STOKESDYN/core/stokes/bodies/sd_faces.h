@@ -31,7 +31,7 @@ typedef struct {
   /* of the shells that there are */
   const sd_faces_pattern *pattern;
   /* [9 spheres] how these stand in space, row-major; NULL: all as they are. [spheres] 0: has no
-   * faces; NULL: all have */
+   * faces; NULL: all have, on every rank */
   const double *turn;
   const char *whole;
   /* [spheres] which shell each has, NULL: the first; [spheres + 1] where its rows begin, NULL: all have as

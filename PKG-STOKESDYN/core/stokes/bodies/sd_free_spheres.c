@@ -6,8 +6,8 @@
 sd_status sd_free_spheres_only(const sd_bodies *A, int *only)
 {
   double others = A->shaped;
-  *only = 0;
-  if (A->known || A->tie) return SD_OK;
+  *only = !A->known && !A->tie;
+  if (!*only || A->none_shaped) return SD_OK;
   const sd_status status = sd_world_sum(&A->world, &others, 1);
   *only = others == 0.0;
   return status;

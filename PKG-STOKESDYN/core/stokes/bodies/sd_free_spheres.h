@@ -7,7 +7,8 @@
 
 SD_BEGIN_C
 
-/* Is it that case on all ranks? Called by all of them together. SD_OK or that of the sum. */
+/* Is it that case on all ranks? Called by all of them together, who ask each other where A does not say.
+ * SD_OK or that of the sum. */
 sd_status sd_free_spheres_only(const sd_bodies *A, int *only);
 
 /* As sd_bodies_solve, with one product; no guess is read. */

@@ -17,7 +17,7 @@ sd_status sd_tie_make(const sd_bodies *A)
   const size_t number = sizeof(double), bodies = (size_t) sd_bodies_count(A);
   t->products = 0;
   const int room = sd_reserve(&t->vectors, number, 6 * VECTORS * bodies, &t->most_vectors) &&
-      sd_reserve(&t->rows, number, 12 * (size_t) t->L->n, &t->most_rows);
+      sd_reserve(&t->rows, number, 12 * (size_t) t->L->n, &t->most_rows) && sd_tie_approach_reserve(A);
   sd_status status = sd_world_agree(&t->L->world, room ? SD_OK : SD_ENOMEMORY);
   if (status == SD_OK) status = sd_tie_approach_make(A);
   return status == SD_OK ? sd_tie_factor(A) : status;

@@ -16,13 +16,14 @@ static void add_square(double c, const double d[3], double B[36])
     for (int q = 0; q < 3; q++) B[6 * p + q] += c * d[p] * d[q];
 }
 
-/* known [n_all]: does the sphere take part? others: room for those of other ranks */
+/* mine [n], L->others: does the sphere take part? Where all do, no rank has to be told. */
 static sd_status know_whole(const sd_bodies *A, double *mine)
 {
   const sd_lubrication *L = A->tie->L;
   const char *whole = A->faces ? A->faces->whole : NULL;
   for (int i = 0; i < L->n; i++) mine[i] = !whole || whole[i];
-  return L->world.refresh && L->world.ranks > 1
+  for (int j = 0; j < L->n_all - L->n; j++) L->others[j] = 1.0;
+  return whole && L->world.refresh && L->world.ranks > 1
       ? L->world.refresh(L->world.ctx, mine, L->others, 1)
       : SD_OK;
 }
@@ -32,7 +33,7 @@ static int takes_part(const sd_lubrication *L, const double *mine, int i)
   return (i < L->n ? mine[i] : L->others[i - L->n]) != 0.0;
 }
 
-static int approach_reserve(const sd_bodies *A)
+int sd_tie_approach_reserve(const sd_bodies *A)
 {
   sd_tie *t = A->tie;
   const sd_lubrication *L = t->L;
@@ -48,12 +49,11 @@ sd_status sd_tie_approach_make(const sd_bodies *A)
 {
   sd_tie *t = A->tie;
   const sd_lubrication *L = t->L;
-  sd_status status = sd_world_agree(&L->world, approach_reserve(A) ? SD_OK : SD_ENOMEMORY);
-  if (status != SD_OK) return status;
   memcpy(t->stiff, L->diagonal, sizeof(double) * 36 * (size_t) L->n);
   memset(t->spring, 0, sizeof(*t->spring) * (size_t) (L->count + L->beyond));
   if (!sd_tie_has_springs(A)) return SD_OK;
-  if ((status = know_whole(A, t->rows)) != SD_OK) return status;
+  const sd_status status = know_whole(A, t->rows);
+  if (status != SD_OK) return status;
   for (long k = 0; k < L->count + L->beyond; k++) {
     const int i = L->pair[k][0], j = L->pair[k][1];
     if (j == i || !takes_part(L, t->rows, i) || !takes_part(L, t->rows, j)) continue;

@@ -28,7 +28,9 @@
 
 #include "sd_tied.h"
 
-/* Where A->tie->L stands now. On all ranks together. SD_OK; SD_ENOMEMORY; that of refresh. */
+/* Room for where A->tie->L stands now; 0: there is none */
+int sd_tie_approach_reserve(const sd_bodies *A);
+/* In that room. On all ranks together. SD_OK; that of refresh. */
 sd_status sd_tie_approach_make(const sd_bodies *A);
 /* share (rows) = X (r + K V), and f [6 bodies] = K^T of that; r (rows, NULL: 0), V [6 bodies, NULL:
  * 0]. SD_OK or that of refresh. */

@@ -175,16 +175,16 @@ static int make_room(border *b)
   return b->in != NULL;
 }
 
-sd_status sd_tie_border_share(const sd_bodies *A, const double *place, double *ranks)
+sd_status sd_tie_border_share(const sd_bodies *A, const double *place, double *ranks, sd_status mine)
 {
   const sd_world *world = &A->tie->L->world;
   border b = {.A = A};
-  int there = border_reserve(&b);
-  if (there) {
+  if (mine == SD_OK && !border_reserve(&b)) mine = SD_ENOMEMORY;
+  if (mine == SD_OK) {
     know_border(&b, place, ranks);
-    there = pack(&b);
+    if (!pack(&b)) mine = SD_ENOMEMORY;
   }
-  sd_status status = sd_world_agree(world, there ? SD_OK : SD_ENOMEMORY);
+  sd_status status = sd_world_agree(world, mine);
   if (status == SD_OK) status = world->tell(world->ctx, b.to, b.from);
   if (status == SD_OK) status = sd_world_agree(world, make_room(&b) ? SD_OK : SD_ENOMEMORY);
   if (status == SD_OK) status = world->exchange(world->ctx, b.out, b.to, b.in, b.from);

@@ -22,8 +22,9 @@ enum {
 /* All bodies at the border, A->tie->others among them, are put off in the factor. */
 void sd_tie_border_put_off(const sd_bodies *A);
 /* When all else is eliminated: blocks of the others come from the ranks that own them. place
- * [SD_PLACE copies]; ranks [bodies] out: how many have each body of this rank. On all ranks together,
- * which must agree on the status: SD_OK; SD_ENOMEMORY; that of a function of sd_world */
-sd_status sd_tie_border_share(const sd_bodies *A, const double *place, double *ranks);
+ * [SD_PLACE copies]; ranks [bodies] out: how many have each body of this rank; mine: that of this rank
+ * so far, with which others go no further. On all ranks together, which must agree on the status: SD_OK;
+ * SD_ENOMEMORY; mine or that of another; that of a function of sd_world */
+sd_status sd_tie_border_share(const sd_bodies *A, const double *place, double *ranks, sd_status mine);
 
 #endif

@@ -22,10 +22,10 @@ static const double stiff = 12.0;
 typedef struct {
   /* [36 bodies] blocks of H_ii, scaled; [bodies and others] the square of the norm of its largest H_ij */
   double *diagonal, *largest;
-  /* of the copies [SD_PLACE]; the body that each belongs to, among those of the factor, -1: none;
-   * does it stand for its sphere, which may have more copies? */
+  /* of the spheres of this rank and of the copies [SD_PLACE]; of copies the body that each belongs to, among
+   * those of the factor, -1: none; does it stand for its sphere, which may have more copies? */
   int copies;
-  double *place;
+  double *mine, *place;
   int *body;
   char *stands;
 } assembly;
@@ -127,10 +127,8 @@ static void find_diagonal(const sd_bodies *A, assembly *a)
 static sd_status tell_places(const sd_bodies *A, assembly *a)
 {
   const sd_lubrication *L = A->tie->L;
-  double *mine = malloc(sizeof(double) * SD_PLACE * ((size_t) L->n + 1));
-  sd_status status = sd_world_agree(&L->world, mine ? SD_OK : SD_ENOMEMORY);
-  for (int i = 0; i < L->n && status == SD_OK; i++) {
-    double *row = mine + SD_PLACE * (long) i;
+  for (int i = 0; i < L->n; i++) {
+    double *row = a->mine + SD_PLACE * (long) i;
     const long b = sd_rigid_whole(&A->spheres, i);
     row[SD_PLACE_RANK] = L->world.me;
     row[SD_PLACE_ROW] = i;
@@ -138,9 +136,7 @@ static sd_status tell_places(const sd_bodies *A, assembly *a)
     memcpy(row + SD_PLACE_ARM, arm_of(A, a, i), 3 * sizeof(double));
     memcpy(row + SD_PLACE_SCALE, A->tie->scale + 6 * b, 6 * sizeof(double));
   }
-  if (status == SD_OK) status = L->world.refresh(L->world.ctx, mine, a->place, SD_PLACE);
-  free(mine);
-  return status;
+  return L->world.refresh(L->world.ctx, a->mine, a->place, SD_PLACE);
 }
 
 typedef struct {
@@ -262,11 +258,12 @@ static sd_status factor_reserve(const sd_bodies *A, assembly *a)
   const size_t all = bodies + (size_t) a->copies, copies = (size_t) a->copies;
   a->diagonal = calloc(36 * bodies + 1, number);
   a->largest = calloc(all + 1, number);
+  a->mine = malloc(number * (SD_PLACE * (size_t) A->spheres.n + 1));
   a->place = malloc(number * (SD_PLACE * copies + 1));
   a->body = malloc(sizeof(int) * (copies + 1));
   a->stands = malloc(copies + 1);
   t->others = t->severed = 0;
-  const int there = a->diagonal && a->largest && a->place && a->body && a->stands &&
+  const int there = a->diagonal && a->largest && a->mine && a->place && a->body && a->stands &&
       sd_reserve(&t->scale, number, 6 * all, &t->most_scales) &&
       sd_reserve(&t->weight, number, bodies, &t->most_weights) &&
       sd_reserve(&t->all, number, 6 * all, &t->most_all) &&
@@ -313,13 +310,14 @@ sd_status sd_tie_factor(const sd_bodies *A)
   sd_status status = sd_world_agree(world, factor_reserve(A, &a));
   if (status == SD_OK) find_diagonal(A, &a);
   if (status == SD_OK && layered(A)) status = tell_places(A, &a);
-  if (status == SD_OK) status = sd_world_agree(world, assemble(A, &a));
-  if (status == SD_OK && layered(A)) status = sd_tie_border_share(A, a.place, A->tie->weight);
+  if (status == SD_OK) status = assemble(A, &a);
+  if (layered(A)) status = sd_tie_border_share(A, a.place, A->tie->weight, status);
   if (status == SD_OK) status = sd_block_cholesky_finish(&A->tie->factor, drop);
   status = sd_world_agree(world, status);
   if (status == SD_OK && layered(A)) status = weigh(A, &a);
   free(a.diagonal);
   free(a.largest);
+  free(a.mine);
   free(a.place);
   free(a.body);
   free(a.stands);

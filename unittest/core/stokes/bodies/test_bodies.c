@@ -2,6 +2,7 @@
  * the number of products that it takes. */
 #include "flock.h"
 
+#include "sd_free_spheres.h"
 #include "sd_tensor.h"
 
 static const double P6 = 6.0 * SD_PI;
@@ -110,6 +111,29 @@ static void free_spheres_take_one_product(void **state)
     }
     flock_free(f);
   }
+}
+
+/* Sums over two ranks, of which the other has a body of a shape; each counts them. */
+static sd_status with_another(void *ctx, double *values, int count)
+{
+  (void) count;
+  ++*(int *) ctx;
+  values[0] += 1.0;
+  return SD_OK;
+}
+
+static void ranks_that_know_of_no_shapes_do_not_ask(void **state)
+{
+  (void) state;
+  int asked = 0, only = -1;
+  sd_bodies A = {.lone = 1, .world = {.ctx = &asked, .sum = with_another}};
+  assert_int_equal(sd_free_spheres_only(&A, &only), SD_OK);
+  assert_int_equal(asked, 1);
+  assert_int_equal(only, 0);
+  A.none_shaped = 1;
+  assert_int_equal(sd_free_spheres_only(&A, &only), SD_OK);
+  assert_int_equal(asked, 1);
+  assert_int_equal(only, 1);
 }
 
 /* A lone clump has the mobility of its shells, in whatever pose; and as spheres, their own. */
@@ -395,6 +419,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(free_spheres_take_one_product),
+      cmocka_unit_test(ranks_that_know_of_no_shapes_do_not_ask),
       cmocka_unit_test(a_lone_clump_has_its_own_mobility),
       cmocka_unit_test(clumps_move_as_the_dense_solution_says),
       cmocka_unit_test(spheres_and_clumps_solve_the_system),
