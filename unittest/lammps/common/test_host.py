@@ -1,5 +1,6 @@
 """The one door to several ranks (host.py), and who is known to go through it (conftest.py)."""
 import os
+import shutil
 import subprocess
 
 import pytest
@@ -59,6 +60,12 @@ def test_mpirun_is_that_of_lammps(tmp_path):
         assert host.launcher_of(family, folders)[0] == str(tmp_path / family / "mpirun")
     with pytest.raises(AssertionError, match="no mpirun of MPICH"):
         host.launcher_of("MPICH", [str(tmp_path / "Open MPI")])
+
+
+def test_the_program_is_that_of_the_path_and_no_script():
+    assert host.said(host.lmp_program(), "-h") == host.said("lmp", "-h")
+    with open(shutil.which(host.lmp_program()), "rb") as file:
+        assert file.read(2) != b"#!"
 
 
 def test_names_are_found_where_a_function_uses_them():

@@ -6,7 +6,7 @@ import pytest
 
 import sph_tools as T
 from sph_tools import random_scene, run, start
-from host import PATIENCE, environment, mpirun
+from host import PATIENCE, environment, lmp_program, mpirun
 
 PAIR = "pair_style sph/artVisc/tensCorr wendland 0.012\npair_coeff * *\n"
 MOVE = "fix move all nve/sph\n"
@@ -214,7 +214,7 @@ def test_message_of_one_rank_reaches_a_file(tmp_path, ranks):
     script = tmp_path / "in.test"
     script.write_text("plugin load stokesdynplugin.so\n" + random_scene() + PAIR + MOVE + "set atom 7 sph/rho 0\n"
                       "run 1\n")
-    command = mpirun(ranks) + ["lmp", "-in", str(script), "-log", "log.test", "-nocite"]
+    command = mpirun(ranks) + [lmp_program(), "-in", str(script), "-log", "log.test", "-nocite"]
     with open(tmp_path / "out", "w") as out:
         code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, cwd=tmp_path, env=environment(),
                               timeout=PATIENCE).returncode

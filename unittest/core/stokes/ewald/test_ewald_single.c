@@ -57,7 +57,7 @@ static double difference(const scene *s, int width, const double *F, const doubl
 static void same_digits_in_box(const scene *s, int single)
 {
   for (int width = 3; width <= 6; width += 3)
-    for (int digits = 2; digits <= 5; digits++) {
+    for (int digits = 2; digits <= 5; digits += CHECK_SIZE(1, 3)) {
       const double tolerance = pow(10.0, -digits);
       double F[6 * MOST], u[6 * MOST], v[6 * MOST];
       forces(s, width, 7, F);

@@ -253,7 +253,7 @@ static void walls_agree_with_all_pairs(void **state)
       F[0][i] = s.F[i];
       for (int d = 1; d < 3; d++) F[d][i] = i % 3 == (wall.axis + d) % 3 ? s.a[i / 3] : 0.0;
     }
-    for (int digits = 3; digits <= 6; digits += 3) {
+    for (int digits = 3; digits <= CHECK_SIZE(6, 3); digits += 3) {
       const double tolerance = pow(10.0, -digits);
       const sd_ewald how = split_of(&s, &wall, clouds[k].largest, tolerance);
       products(&s, &how, 3, F[0], u[0]);
@@ -276,7 +276,7 @@ static void tight_tolerances_are_kept(void **state)
   const sd_law law = {.tensor = SD_TENSOR_RPY, .wall = wall};
   double u[3 * N], expected[3 * N];
   all_pairs(&law, &(sd_spheres){s.x, s.a, s.w}, s.F, expected);
-  for (int digits = 9; digits <= 11; digits += 2) {
+  for (int digits = CHECK_SIZE(9, 11); digits <= 11; digits += 2) {
     const double tolerance = pow(10.0, -digits);
     const sd_ewald how = split_of(&s, &wall, 1.0, tolerance);
     products(&s, &how, 1, s.F, u);

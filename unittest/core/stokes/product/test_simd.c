@@ -125,7 +125,7 @@ static void every_size_and_overlap(void **state)
   (void) state;
   const int sizes[] = {1, 2, 3, 7, 8, 9, 15, 16, 17, 63, 255, 256, 257, 300};
   for (size_t k = 0; k < sizeof(sizes) / sizeof(sizes[0]); k++)
-    for (int dense = 0; dense < 2; dense++) {
+    for (int dense = CHECK_SIZE(0, 1); dense < 2; dense++) {
       scene s = cloud(sizes[k], dense ? 4.0 : 60.0, 0.4, 1.6, 10 + k);
       for (int kind = SD_TENSOR_RPY; kind <= SD_TENSOR_OSEEN; kind++) {
         s.kind = kind;
