@@ -120,7 +120,7 @@ void Solve::draw(const Draw &draw)
   find_followers();
   of_points.assign(6 * count + 6, 0.0);
   of_films.assign(6 * count + 6, 0.0);
-  std::vector<double> scratch(24 * count + 12 * (size_t) scene.size() + sd_bodies_unknowns(&A) + 1);
+  std::vector<double> scratch(24 * count + 12 * (size_t) scene.size() + 1);
   const sd_drifter d = drifter();
   const sd_drifter_push all = {bodies.u.data(), slip.data(), bodies.F.data(), pushed.data(),
                                bodies.velocities.empty() ? nullptr : bodies.velocities.data(), 0.1 * draw.tolerance};
@@ -173,7 +173,7 @@ void Solve::difference(double sign)
 {
   const sd_bodies &A = bodies.bodies;
   const size_t count = sd_bodies_count(&A), n = scene.size();
-  std::vector<double> scratch(18 * count + 6 * n + 2 * sd_bodies_unknowns(&A) + 1), load(6 * count + 6);
+  std::vector<double> scratch(18 * count + 6 * n + sd_bodies_unknowns(&A) + 1), load(6 * count + 6);
   const sd_status status = sd_drifter_difference(&A, of_moves.data(), sign * kT / (2.0 * reach), scratch.data(),
                                                  slip_left.data(), load.data());
   if (status != SD_OK)

@@ -19,7 +19,7 @@ static long largest_body(const sd_bodies *A)
 
 long sd_bodies_work(const sd_bodies *A)
 {
-  return 6 * sd_bodies_unknowns(A) + 8 * 6 * (long) sd_bodies_count(A) + 12 * (long) A->spheres.n +
+  return 6 * sd_bodies_unknowns(A) + 9 * 6 * (long) sd_bodies_count(A) + 12 * (long) A->spheres.n +
       2 * largest_body(A) + 1;
 }
 
@@ -49,12 +49,16 @@ static void bodies_measure(void *ctx, const sd_cg_vectors *v, double own[SD_CG_O
 {
   const sd_bodies_loop *c = ctx;
   const sd_bodies *A = c->A;
-  const double *V = sd_bodies_motion_of(c, v->x);
-  sd_bodies_move(A, V, c->on_spheres, c->rows);
-  for (long j = 0; j < sd_bodies_unknowns(A); j++) {
-    own[NOISE] += A->D[j] * v->r[j] * v->r[j];
-    own[FORCES] += v->x[j] * (c->rows[j] - c->problem->u[j]);
-  }
+  const double *V = sd_bodies_motion_of(c, v->x), *moved = sd_bodies_move_spheres(A, V, c->on_spheres);
+  double noise[3] = {0.0}, forces[3] = {0.0};    /* three of each, which do not wait for each other */
+  for (sd_bodies_part part = {0}; sd_bodies_next(A, moved, &part);)
+    for (long j = part.begin; j < part.end; j += 3)
+      for (int d = 0; d < 3; d++) {
+        noise[d] += A->D[j + d] * v->r[j + d] * v->r[j + d];
+        forces[d] += v->x[j + d] * (part.v[j + d - part.begin] - c->problem->u[j + d]);
+      }
+  own[NOISE] = noise[0] + noise[1] + noise[2];
+  own[FORCES] = forces[0] + forces[1] + forces[2];
   own[LOADS] = sd_bodies_spent(c, V) + sd_bodies_spent(c, sd_bodies_motion_of(c, v->z));
 }
 
@@ -207,7 +211,7 @@ sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
   if (status != SD_OK) return status;
   if (only) return sd_free_spheres_solve(A, problem, answer, report);
   const long rows = sd_bodies_unknowns(A), bodies = 6 * (long) sd_bodies_count(A), size = rows + bodies;
-  double *r = work + 3 * size, *by_bodies = r + 3 * rows, *on_spheres = by_bodies + 5 * bodies;
+  double *r = work + 3 * size, *by_bodies = r + 3 * rows, *on_spheres = by_bodies + 6 * bodies;
   sd_bodies_loop c = {
       .A = A,
       .problem = problem,

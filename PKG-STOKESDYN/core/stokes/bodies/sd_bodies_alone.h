@@ -5,20 +5,21 @@
 
 #include "sd_body.h"
 
-/* pre(r, f): l and V; r, f NULL: 0. Of held bodies V is read. */
-void sd_bodies_alone(const sd_bodies *A, const double *r, const double *f, double *scratch,
-                     double *l, double *V);
-/* f -= K^T M_b'^-1 r */
+/* pre(r, f): l and V; r, f NULL: 0. Of held bodies V is read. bears: what sd_bodies_alone_bear made of r; NULL:
+ * not known. */
+void sd_bodies_alone(const sd_bodies *A, const double *r, const double *bears, const double *f,
+                     double *scratch, double *l, double *V);
+/* f [6 bodies] = K^T M_b'^-1 r */
 void sd_bodies_alone_bear(const sd_bodies *A, const double *r, double *scratch, double *f);
 /* f = N^-1 V; V = N f */
 void sd_bodies_alone_resist(const sd_bodies *A, const double *V, double *f);
 void sd_bodies_alone_move(const sd_bodies *A, const double *f, double *V);
 /* Has any body a dN? */
 int sd_bodies_shells(const sd_bodies *A);
-/* w = M' l - K V; shells: sd_bodies_shells(). Scratch: bodies [12 bodies], on_spheres [6 spheres],
- * rows. SD_OK or that of A->apply. */
+/* w = M' l - K V; shells: sd_bodies_shells(). Scratch: bodies [12 bodies], on_spheres [6 spheres].
+ * SD_OK or that of A->apply. */
 sd_status sd_bodies_product(const sd_bodies *A, int shells, const double *l, const double *V,
-                            double *bodies, double *on_spheres, double *rows, double *w);
+                            double *bodies, double *on_spheres, double *w);
 /* That of one body */
 void sd_body_resistance(const sd_body *b, const double V[6], double f[6]);
 

@@ -25,25 +25,21 @@ sd_status sd_bodies_pre(sd_bodies_loop *c, const double *r, const double *f, int
 {
   const sd_bodies *A = c->A;
   const long size = sd_bodies_motions(c);
-  double *load = c->bodies, *tied = load + size, *borne = tied + size;
+  double *load = c->bodies, *tied = load + size, *borne = tied + size, *bears = borne + size;
   if (!A->tie) {
-    sd_bodies_alone(A, r, f, c->alone, l, V);
+    sd_bodies_alone(A, r, NULL, f, c->alone, l, V);
     return SD_OK;
   }
-  if (f)
-    memcpy(load, f, sizeof(double) * (size_t) size);
-  else
-    memset(load, 0, sizeof(double) * (size_t) size);
-  if (r) sd_bodies_alone_bear(A, r, c->alone, load);
+  if (r) sd_bodies_alone_bear(A, r, c->alone, bears);
+  for (long j = 0; j < size; j++) load[j] = (f ? f[j] : 0.0) - (r ? bears[j] : 0.0);
   memcpy(tied, V, sizeof(double) * (size_t) size);
-  const sd_status status =
-      sd_tie_solve(A, load, r, c->tie_tolerance, moved, tied, borne, c->rows);
+  const sd_status status = sd_tie_solve(A, load, r, c->tie_tolerance, moved, tied, borne);
   if (status != SD_OK) return status;
   for (long j = 0; j < size; j++) load[j] = (f ? f[j] : 0.0) - borne[j];
-  sd_bodies_alone(A, r, load, c->alone, l, V);
+  sd_bodies_alone(A, r, r ? bears : NULL, load, c->alone, l, V);
   for (int b = 0; b < sd_bodies_count(A); b++)
     if (sd_tie_binds(A, b)) memcpy(V + 6 * (long) b, tied + 6 * (long) b, 6 * sizeof(double));
-  for (long j = 0; sd_tie_has_springs(A) && j < sd_bodies_unknowns(A); j++) l[j] += c->rows[j];
+  sd_tie_share(A, l);
   return SD_OK;
 }
 
@@ -52,7 +48,7 @@ sd_status sd_bodies_multiply(void *ctx, const double *p, double *w)
   sd_bodies_loop *c = ctx;
   const double *V = p + sd_bodies_unknowns(c->A);
   const sd_status status =
-      sd_bodies_product(c->A, c->shells, p, V, c->bodies, c->on_spheres, c->rows, w);
+      sd_bodies_product(c->A, c->shells, p, V, c->bodies, c->on_spheres, w);
   if (status == SD_OK) c->report->products++;
   return status;
 }

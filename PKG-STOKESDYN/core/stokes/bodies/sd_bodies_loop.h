@@ -24,7 +24,7 @@ typedef struct {
   sd_cg_vectors v;
   /* [6 bodies] the loads, and those with L V_inf, of the second line */
   double *loads, *f;
-  /* scratch: rows; spheres, twice; bodies, three times; of sd_bodies_alone */
+  /* scratch: rows; spheres, twice; bodies, four times; of sd_bodies_alone */
   double *rows, *on_spheres, *bodies, *alone;
   int shells, guess_is_new;
   sd_bodies_verdict verdict;

@@ -14,8 +14,8 @@ typedef struct {
   int shells;
   /* [rows] P where it is diagonal, 1 where it has blocks, 0 at rows that no body has */
   double *diagonal;
-  /* scratch: bodies, three times, of which the last stay 0; spheres; rows; two bodies */
-  double *bodies, *on_spheres, *rows, *own;
+  /* scratch: bodies, three times, of which the last stay 0; spheres; two bodies */
+  double *bodies, *on_spheres, *own;
 } draw;
 
 /* P, its transpose, and the inverse of that */
@@ -32,7 +32,7 @@ static sd_status bodies_noise_apply(void *ctx, const double *l, double *w)
 {
   const draw *d = ctx;
   const double *still = d->bodies + 12 * (long) sd_bodies_count(d->A);
-  return sd_bodies_product(d->A, d->shells, l, still, d->bodies, d->on_spheres, d->rows, w);
+  return sd_bodies_product(d->A, d->shells, l, still, d->bodies, d->on_spheres, w);
 }
 
 static const sd_body_root *noise_root_of(const sd_bodies_blocks *blocks, int b)
@@ -138,12 +138,11 @@ sd_status sd_bodies_draw(sd_bodies_noise *s, const sd_bodies *A, const sd_bodies
                          const double *w, double tolerance, double *y, sd_noise_report *report)
 {
   const long rows = sd_bodies_unknowns(A), motions = 6 * (long) sd_bodies_count(A);
-  const long all = 2 * rows + 3 * motions + 6 * (long) A->spheres.n + largest_block(A, blocks) + 1;
+  const long all = rows + 3 * motions + 6 * (long) A->spheres.n + largest_block(A, blocks) + 1;
   if (!sd_reserve(&s->work, sizeof(double), (size_t) all, &s->room)) return SD_ENOMEMORY;
   double *diagonal = s->work, *bodies = diagonal + rows, *on_spheres = bodies + 3 * motions;
-  double *scratch = on_spheres + 6 * (long) A->spheres.n;
-  draw d = {A,      blocks,     sd_bodies_shells(A), diagonal,
-            bodies, on_spheres, scratch,             scratch + rows};
+  double *own = on_spheres + 6 * (long) A->spheres.n;
+  draw d = {A, blocks, sd_bodies_shells(A), diagonal, bodies, on_spheres, own};
   memset(bodies + 2 * motions, 0, sizeof(double) * (size_t) motions);
   fill_diagonal(&d);
   const sd_noise_matrix M = {.n = rows,

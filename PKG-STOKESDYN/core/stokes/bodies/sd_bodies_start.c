@@ -21,7 +21,7 @@ static sd_status start_alone(sd_bodies_loop *c)
   double s[3] = {0.0}, *V = sd_bodies_motion_of(c, c->v.x), *still = sd_bodies_motion_of(c, c->v.z);
   for (long j = 0; j < sd_bodies_unknowns(A); j++) c->v.r[j] = -c->problem->u[j];
   hold(c, V);
-  sd_bodies_alone(A, c->v.r, c->f, c->alone, c->v.x, V);
+  sd_bodies_alone(A, c->v.r, NULL, c->f, c->alone, c->v.x, V);
   sd_bodies_move(A, V, c->on_spheres, c->rows);
   for (long j = 0; j < sd_bodies_unknowns(A); j++) {
     const double u = c->problem->u[j], v = c->rows[j];

@@ -14,6 +14,26 @@ void sd_bodies_move(const sd_bodies *A, const double *V, double *on_spheres, dou
   if (through) sd_rigid_move(&A->points, on_spheres, rows);
 }
 
+const double *sd_bodies_move_spheres(const sd_bodies *A, const double *V, double *on_spheres)
+{
+  if (!A->points.whole) return V;
+  sd_rigid_move(&A->spheres, V, on_spheres);
+  return on_spheres;
+}
+
+int sd_bodies_next(const sd_bodies *A, const double *moved, sd_bodies_part *part)
+{
+  const sd_rigid *K = A->points.whole ? &A->points : &A->spheres;
+  const long first = part->end / K->width;
+  if (first >= K->n) return 0;
+  const int many = K->n - first < SD_BODIES_PART ? (int) (K->n - first) : SD_BODIES_PART;
+  const sd_rigid some = {many, K->width, K->whole ? K->whole + first : NULL, K->arm ? K->arm + 3 * first : NULL};
+  part->begin = K->width * first;
+  part->end = part->begin + (long) K->width * many;
+  sd_rigid_move(&some, K->whole ? moved : moved + 6 * first, part->v);
+  return 1;
+}
+
 void sd_bodies_collect(const sd_bodies *A, const double *rows, double *on_spheres, double *f)
 {
   const int through = A->points.whole != NULL;
@@ -65,18 +85,57 @@ void sd_body_resistance(const sd_body *b, const double V[6], double f[6])
   turned6(b, b->shape->resistance, b->a, b->eta * b->a, V, f);
 }
 
-/* G^T y of a body, G = M_b'^-1 K of its shape, as load in its axes and lengths */
-static void add_rigid(const sd_body_shape *s, const double *y, double sign, double load[6])
+/* K^T M_b'^-1 y of a body, as load in its axes and lengths, times a number; every second row in sums of its own,
+ * which do not wait for the others */
+static void add_rigid(const sd_body_shape *s, const double *y, double times, double load[6])
 {
-  for (long i = 0; i < (long) s->width * s->m; i++)
-    for (int p = 0; p < 6; p++) load[p] += sign * s->rigid[6 * i + p] * y[i];
+  const long N = (long) s->width * s->m;
+  double even[6] = {0.0}, odd[6] = {0.0};
+  for (long i = 0; i < N; i += 2)
+    for (int p = 0; p < 6; p++) even[p] += s->rigid[6 * i + p] * y[i];
+  for (long i = 1; i < N; i += 2)
+    for (int p = 0; p < 6; p++) odd[p] += s->rigid[6 * i + p] * y[i];
+  for (int p = 0; p < 6; p++) load[p] += times * (even[p] + odd[p]);
 }
 
+/* y += K V */
+static void add_body_motion(const sd_body_shape *s, const double V[6], double *y)
+{
+  for (int k = 0; k < s->m; k++, y += s->width) {
+    double turning[3];
+    sd_cross(V + 3, s->x + 3 * (long) k, turning);
+    for (int d = 0; d < 3; d++) y[d] += V[d] + turning[d];
+    for (int d = 3; d < s->width; d++) y[d] += V[d];
+  }
+}
+
+static int is_turned(const double R[9])
+{
+  for (int e = 0; e < 9; e++)
+    if (R[e] != (e % 4 == 0)) return 1;
+  return 0;
+}
+
+/* Rows of a body in the axes and lengths of its shape, or back to rows: vectors are as they are where it is not
+ * turned and has width 3. */
 static void read_rows(const sd_body *b, const double *rows, double *y)
 {
-  const int w = b->shape->width;
-  for (int k = 0; k < b->shape->m; k++)
-    to_shape(b->R, w, b->a, rows + (long) w * b->row[k], y + w * k);
+  const int w = b->shape->width, plain = w == 3 && !is_turned(b->R);
+  for (int k = 0; k < b->shape->m; k++) {
+    const double *row = rows + (long) w * b->row[k];
+    if (plain) memcpy(y + 3 * k, row, 3 * sizeof(double));
+    else to_shape(b->R, w, b->a, row, y + w * k);
+  }
+}
+
+static void write_rows(const sd_body *b, const double *z, double *rows)
+{
+  const int w = b->shape->width, plain = w == 3 && !is_turned(b->R);
+  for (int k = 0; k < b->shape->m; k++) {
+    double *row = rows + (long) w * b->row[k];
+    if (plain) memcpy(row, z + 3 * k, 3 * sizeof(double));
+    else to_space(b->R, w, b->a, z + w * k, row);
+  }
 }
 
 /* U of a body whose W is given (at = 0), or W of one whose U is (at = 3), both in motion, in the axes
@@ -96,23 +155,21 @@ static void move_in_part(const sd_body_shape *s, int at, const double load[6], d
   sd_cholesky_solve(3, R, 1, motion + at); /* a block of a matrix that has been inverted */
 }
 
-/* pre(r, f) of body b. In the axes and lengths of the shape all matrices are constant: with s = eta a,
- * s B for M_b'^-1 and s G for M_b'^-1 K, V = N (f - s G^T y) / s, z = s (B y + G V), y = r. G^T y is
- * K^T B y without a second product, since B is symmetric. */
-static void body_respond(const sd_body *b, sd_body_known known, const double *r, const double *f, double *scratch,
-                         double *l, double V[6])
+/* pre(r, f) of body b; bears: K^T M_b'^-1 r, NULL: not known. In the axes and lengths of the shape all matrices
+ * are constant: with s = eta a, s B for M_b'^-1, V = N (f - K^T s B y) / s, z = s B (y + K V), y = r. What is
+ * rigid in r goes before the product, and leaves no rounding there. */
+static void body_respond(const sd_body *b, sd_body_known known, const double *r, const double *bears,
+                         const double *f, double *scratch, double *l, double V[6])
 {
   const sd_body_shape *shape = b->shape;
   const double s = b->eta * b->a;
-  const int w = shape->width, N = w * shape->m;
-  double *y = scratch, *z = scratch + N, load[6] = {0.0}, motion[6];
-  memset(z, 0, sizeof(double) * (size_t) N);
-  if (f) to_shape(b->R, 6, 1.0 / b->a, f, load);
-  if (r) {
-    read_rows(b, r, y);
-    add_rigid(shape, y, -s, load);
-    sd_body_shape_answer(shape, y, z);
-  }
+  const int N = shape->width * shape->m;
+  double *y = scratch, *z = scratch + N, own[6] = {0.0}, load[6] = {0.0}, motion[6];
+  memset(y, 0, sizeof(double) * (size_t) (2 * N));
+  for (int d = 0; d < 6; d++) own[d] = (f ? f[d] : 0.0) - (bears ? bears[d] : 0.0);
+  to_shape(b->R, 6, 1.0 / b->a, own, load);
+  if (r) read_rows(b, r, y);
+  if (r && !bears) add_rigid(shape, y, -s, load);
   if (known == SD_BODY_FREE) {
     multiply6(shape->mobility, 1.0 / s, load, motion);
     to_space(b->R, 6, 1.0 / b->a, motion, V);
@@ -125,16 +182,14 @@ static void body_respond(const sd_body *b, sd_body_known known, const double *r,
     sd_multiply3(b->R, motion + at, V + at);
     for (int d = at; d < 6 && at == 3; d++) V[d] /= b->a;
   }
-  for (int i = 0; i < N; i++) {
-    for (int p = 0; p < 6; p++) z[i] += shape->rigid[6 * (long) i + p] * motion[p];
-    z[i] *= s;
-  }
-  for (int k = 0; k < shape->m; k++)
-    to_space(b->R, w, b->a, z + w * k, l + (long) w * b->row[k]);
+  add_body_motion(shape, motion, y);
+  sd_body_shape_answer(shape, y, z);
+  for (int i = 0; i < N; i++) z[i] *= s;
+  write_rows(b, z, l);
 }
 
-void sd_bodies_alone(const sd_bodies *A, const double *r, const double *f, double *scratch,
-                     double *l, double *V)
+void sd_bodies_alone(const sd_bodies *A, const double *r, const double *bears, const double *f,
+                     double *scratch, double *l, double *V)
 {
   const int w = A->points.width;
   for (int e = 0; e < A->lone; e++)
@@ -147,7 +202,8 @@ void sd_bodies_alone(const sd_bodies *A, const double *r, const double *f, doubl
     }
   for (int b = 0; b < A->shaped; b++) {
     const long of = 6 * (long) (A->lone + b);
-    body_respond(A->body + b, sd_bodies_known(A, A->lone + b), r, f ? f + of : NULL, scratch, l, V + of);
+    body_respond(A->body + b, sd_bodies_known(A, A->lone + b), r, bears ? bears + of : NULL, f ? f + of : NULL,
+                 scratch, l, V + of);
   }
 }
 
@@ -155,17 +211,16 @@ void sd_bodies_alone_bear(const sd_bodies *A, const double *r, double *scratch, 
 {
   const int w = A->points.width;
   for (int e = 0; e < A->lone; e++)
-    for (int d = 0; d < w; d++) {
+    for (int d = 0; d < 6; d++) {
       const long j = (long) w * A->loner[e] + d;
-      f[6 * (long) e + d] -= A->D[j] * r[j];
+      f[6 * (long) e + d] = d < w ? A->D[j] * r[j] : 0.0;
     }
   for (int b = 0; b < A->shaped; b++) {
     const sd_body *body = A->body + b;
-    double load[6] = {0.0}, space[6], *to = f + 6 * (long) (A->lone + b);
+    double load[6] = {0.0};
     read_rows(body, r, scratch);
-    add_rigid(body->shape, scratch, -body->eta * body->a, load);
-    to_space(body->R, 6, body->a, load, space);
-    for (int d = 0; d < 6; d++) to[d] += space[d];
+    add_rigid(body->shape, scratch, body->eta * body->a, load);
+    to_space(body->R, 6, body->a, load, f + 6 * (long) (A->lone + b));
   }
 }
 
@@ -219,7 +274,7 @@ int sd_bodies_shells(const sd_bodies *A)
 }
 
 sd_status sd_bodies_product(const sd_bodies *A, int shells, const double *l, const double *V,
-                            double *bodies, double *on_spheres, double *rows, double *w)
+                            double *bodies, double *on_spheres, double *w)
 {
   const size_t motions = 6 * (size_t) sd_bodies_count(A);
   double *f = bodies, *less = f + motions;
@@ -231,8 +286,9 @@ sd_status sd_bodies_product(const sd_bodies *A, int shells, const double *l, con
     take_off_shells(A, f, less);
     V = less;
   }
-  sd_bodies_move(A, V, on_spheres, rows);
-  for (long j = 0; j < sd_bodies_unknowns(A); j++) w[j] += l[j] / A->D[j] - rows[j];
+  const double *moved = sd_bodies_move_spheres(A, V, on_spheres);
+  for (sd_bodies_part part = {0}; sd_bodies_next(A, moved, &part);)
+    for (long j = part.begin; j < part.end; j++) w[j] += l[j] / A->D[j] - part.v[j - part.begin];
   return SD_OK;
 }
 

@@ -88,11 +88,11 @@ static sd_status bear_films(const sd_bodies *A, const double *v, double *on_sphe
   return SD_OK;
 }
 
-/* v [6 bodies] += P^-1 load, of what is not given; work [12 bodies + rows] */
+/* v [6 bodies] += P^-1 load, of what is not given; work [12 bodies] */
 static sd_status add_response(const sd_bodies *A, double tolerance, double *load, double *work, double *v)
 {
   const long motions = 6 * (long) sd_bodies_count(A);
-  double *z = work, *borne = z + motions, *share = borne + motions;
+  double *z = work, *borne = z + motions;
   keep_free(A, NULL, load);
   sd_bodies_alone_move(A, load, z);
   keep_free(A, NULL, z);
@@ -100,7 +100,7 @@ static sd_status add_response(const sd_bodies *A, double tolerance, double *load
     if (!A->tie || !sd_tie_binds(A, (int) (j / 6))) v[j] += z[j];
   if (!A->tie) return SD_OK;
   memset(z, 0, sizeof(double) * (size_t) motions);
-  const sd_status status = sd_tie_solve(A, load, NULL, tolerance, 0, z, borne, share);
+  const sd_status status = sd_tie_solve(A, load, NULL, tolerance, 0, z, borne);
   for (long j = 0; j < motions && status == SD_OK; j++)
     if (sd_tie_binds(A, (int) (j / 6))) v[j] += z[j];
   return status;
@@ -139,10 +139,9 @@ sd_status sd_drifter_difference(const sd_bodies *A, const double *l, double part
 {
   const long motions = 6 * (long) sd_bodies_count(A), n = sd_bodies_unknowns(A);
   double *still = work, *bodies = still + motions, *on_spheres = bodies + 2 * motions;
-  double *rows = on_spheres + 6 * (long) A->spheres.n, *u = rows + n;
+  double *u = on_spheres + 6 * (long) A->spheres.n;
   memset(still, 0, sizeof(double) * (size_t) motions);
-  const sd_status status =
-      sd_bodies_product(A, sd_bodies_shells(A), l, still, bodies, on_spheres, rows, u);
+  const sd_status status = sd_bodies_product(A, sd_bodies_shells(A), l, still, bodies, on_spheres, u);
   if (status != SD_OK) return status;
   for (long j = 0; j < n; j++) slip[j] += part * u[j];
   sd_bodies_collect(A, l, on_spheres, bodies);

@@ -39,7 +39,7 @@ void sd_drifter_spread(const sd_bodies *A, const sd_drifter *d, const double *v,
 /* Velocities of the fluid and random ones at the points, forces and random forces on the spheres
  * (NULL: 0); with a tie, where sd_tie_make has been, to this tolerance of sd_tie_solve. velocities [6 bodies]
  * of those that have a known one, NULL: they rest. v', v'' [6 bodies] out, velocities that are given among
- * them. work [24 bodies + 12 spheres + points]. SD_OK; that of sd_tie_solve. */
+ * them. work [24 bodies + 12 spheres]. SD_OK; that of sd_tie_solve. */
 typedef struct {
   const double *u, *y, *F, *f, *velocities;
   double tolerance;
@@ -50,7 +50,7 @@ sd_status sd_drifter_move(const sd_bodies *A, const sd_drifter *d, const sd_drif
 /* What the mean lacks where sum_k (d_k M') A_k is left, by differences: of kT sum_k (d_k M') A_k as slip and
  * -kT sum_k (d_k K)^T A_k as load one term each, with l = A W / e, W random and of variance 1, the bodies at
  * x + e W and part = kT/2, then at x - e W and part = -kT/2. slip [points] += part M' l, load [6 bodies] -=
- * part K^T l. work [18 bodies + 6 spheres + 2 points]. SD_OK; that of A->apply. */
+ * part K^T l. work [18 bodies + 6 spheres + points]. SD_OK; that of A->apply. */
 sd_status sd_drifter_difference(const sd_bodies *A, const double *l, double part, double *work, double *slip,
                                 double *load);
 

@@ -84,14 +84,14 @@ static sd_status tie_judge(void *ctx, const sd_cg_state *now, int *done)
   return SD_OK;
 }
 
-/* borne = K^T (L + X) K V_held + K^T X r, what is so before anybody moves; share: scratch */
-static sd_status bear_before(const sd_bodies *A, const double *r, int moved, const double *V,
-                             double *borne, double *share)
+/* borne = K^T (L + X) K V_held + K^T X r, what is so before anybody moves */
+static sd_status bear_before(const sd_bodies *A, const double *r, int moved, const double *V, double *borne)
 {
   const int bodies = sd_bodies_count(A);
   sd_status status = SD_OK;
   memset(borne, 0, sizeof(double) * 6 * (size_t) bodies);
-  if (sd_tie_has_springs(A) && r) status = sd_tie_approach_share(A, r, NULL, share, borne);
+  if (sd_tie_has_springs(A)) sd_tie_approach_see(A, r);
+  if (sd_tie_has_springs(A) && r) status = sd_tie_approach_push(A, NULL, borne);
   if (!moved || status != SD_OK) return status;
   double *by_held = A->tie->vectors;
   status = resist(A, V, by_held);
@@ -103,7 +103,7 @@ static sd_status bear_before(const sd_bodies *A, const double *r, int moved, con
  * and bodies without neighbours, is not the preconditioner's, and stays as it is. H_0 V_held loads
  * bodies that are spun, whose centres are free. */
 sd_status sd_tie_solve(const sd_bodies *A, const double *g, const double *r, double tolerance,
-                       int moved, double *V, double *borne, double *share)
+                       int moved, double *V, double *borne)
 {
   sd_tie *t = A->tie;
   const long size = 6 * (long) sd_bodies_count(A);
@@ -118,7 +118,7 @@ sd_status sd_tie_solve(const sd_bodies *A, const double *g, const double *r, dou
                     .judge = tie_judge,
                     .world = &A->world};
   sd_cg_state state;
-  sd_status status = bear_before(A, r, moved, V, borne, share);
+  sd_status status = bear_before(A, r, moved, V, borne);
   if (status != SD_OK) return status;
   memset(x, 0, sizeof(double) * (size_t) size);
   if (moved) sd_bodies_alone_resist(A, V, x);
@@ -128,7 +128,12 @@ sd_status sd_tie_solve(const sd_bodies *A, const double *g, const double *r, dou
   for (long j = 0; j < size; j++) V[j] += x[j];
   sd_bodies_alone_resist(A, V, borne);
   for (long j = 0; j < size; j++) borne[j] = g[j] - v.r[j] - borne[j];
-  return sd_tie_has_springs(A) ? sd_tie_approach_share(A, r, V, share, t->vectors) : SD_OK;
+  return sd_tie_has_springs(A) ? sd_tie_approach_push(A, V, NULL) : SD_OK;
+}
+
+void sd_tie_share(const sd_bodies *A, double *l)
+{
+  if (sd_tie_has_springs(A)) sd_tie_approach_add(A, l);
 }
 
 void sd_tie_free(sd_tie *t)

@@ -23,10 +23,12 @@ sd_status sd_tie_make(const sd_bodies *A);
 /* V [6 bodies] from g [6 bodies] and r (rows, NULL: 0), until what H V lacks of the right side is
  * below `tolerance` of that. V: on entry velocities of the held bodies, and 0 elsewhere; moved: some
  * are not 0. Bodies that nobody is near to keep V = 0. borne = K^T (L K V + X (r + K V)): what a body
- * bears less than alone; share (rows) = X (r + K V), not written where there are no springs. SD_OK,
- * also where as many products as are allowed leave more; as sd_cg.h and sd_tie_make. */
+ * bears less than alone. SD_OK, also where as many products as are allowed leave more; as sd_cg.h and
+ * sd_tie_make. */
 sd_status sd_tie_solve(const sd_bodies *A, const double *g, const double *r, double tolerance,
-                       int moved, double *V, double *borne, double *share);
+                       int moved, double *V, double *borne);
+/* l (rows) += X (r + K V) of the last solution */
+void sd_tie_share(const sd_bodies *A, double *l);
 void sd_tie_free(sd_tie *t);
 
 SD_END_C

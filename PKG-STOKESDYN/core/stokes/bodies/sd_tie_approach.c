@@ -33,16 +33,22 @@ static int takes_part(const sd_lubrication *L, const double *mine, int i)
   return (i < L->n ? mine[i] : L->others[i - L->n]) != 0.0;
 }
 
+/* Of a sphere: how its surface moves, or, where rows are spheres, these */
+static int numbers_seen(const sd_bodies *A)
+{
+  return A->faces ? SD_FACES_WIDTH : 6;
+}
+
 int sd_tie_approach_reserve(const sd_bodies *A)
 {
   sd_tie *t = A->tie;
   const sd_lubrication *L = t->L;
   const size_t pairs = (size_t) (L->count + L->beyond), n = (size_t) L->n;
-  const size_t faces = A->faces ? SD_FACES_WIDTH : 0, others = (size_t) (L->n_all - L->n);
+  const size_t width = (size_t) numbers_seen(A), others = (size_t) (L->n_all - L->n);
   return sd_reserve(&t->spring, sizeof(*t->spring), pairs + 1, &t->most_springs) &&
       sd_reserve(&t->stiff, sizeof(double), 36 * (n + 1), &t->most_stiff) &&
-      sd_reserve(&t->face, sizeof(double), 2 * faces * n + 1, &t->most_faces) &&
-      sd_reserve(&t->faces_there, sizeof(double), faces * others + 1, &t->most_faces_there);
+      sd_reserve(&t->face, sizeof(double), 2 * width * n + 1, &t->most_faces) &&
+      sd_reserve(&t->faces_there, sizeof(double), width * others + 1, &t->most_faces_there);
 }
 
 sd_status sd_tie_approach_make(const sd_bodies *A)
@@ -98,44 +104,54 @@ static void add_springs(const sd_bodies *A, int width, const double *v, const do
   }
 }
 
-/* What of r + K V the springs see, by spheres; on_spheres: scratch [6 spheres] */
-static void see(const sd_bodies *A, const double *r, const double *V, double *on_spheres, double *v)
+/* What springs do, behind what they see */
+static double *pushed_of(const sd_bodies *A)
 {
-  const int n = A->spheres.n, width = A->faces ? SD_FACES_WIDTH : 6;
-  if (r && A->faces)
-    sd_faces_read(A->faces, n, r, v);
-  else if (r)
-    memcpy(v, r, sizeof(double) * 6 * (size_t) n);
-  else
-    memset(v, 0, sizeof(double) * (size_t) width * (size_t) n);
-  if (!V) return;
-  sd_rigid_move(&A->spheres, V, on_spheres);
-  for (long i = 0; i < n; i++)
-    for (int d = 0; d < 3; d++) v[width * i + d] += on_spheres[6 * i + d];
+  return A->tie->face + numbers_seen(A) * (long) A->spheres.n;
 }
 
-sd_status sd_tie_approach_share(const sd_bodies *A, const double *r, const double *V, double *share,
-                                double *f)
+void sd_tie_approach_see(const sd_bodies *A, const double *r)
 {
-  const sd_tie *t = A->tie;
-  const sd_world *world = &t->L->world;
-  const int n = A->spheres.n, width = A->faces ? SD_FACES_WIDTH : 6;
-  const size_t size = sizeof(double) * (size_t) width * (size_t) n;
-  double *on_spheres = t->rows + 6 * (long) n;
-  double *v = A->faces ? t->face : t->rows, *there = A->faces ? t->faces_there : t->L->others;
-  double *pushed = A->faces ? t->face + width * (long) n : share;
-  see(A, r, V, on_spheres, v);
-  if (world->refresh && world->ranks > 1) {
-    const sd_status status = world->refresh(world->ctx, v, there, width);
-    if (status != SD_OK) return status;
-  }
-  memset(pushed, 0, size);
-  add_springs(A, width, v, there, pushed);
+  const int n = A->spheres.n;
+  double *v = A->tie->face;
+  if (r && A->faces) sd_faces_read(A->faces, n, r, v);
+  else if (r) memcpy(v, r, sizeof(double) * 6 * (size_t) n);
+  else memset(v, 0, sizeof(double) * (size_t) numbers_seen(A) * (size_t) n);
+}
+
+/* Forces of the springs on bodies; on_spheres: scratch [6 spheres] */
+static void push_bodies(const sd_bodies *A, double *on_spheres, double *f)
+{
+  const int n = A->spheres.n, width = numbers_seen(A);
+  const double *pushed = pushed_of(A);
   memset(on_spheres, 0, sizeof(double) * 6 * (size_t) n);
   for (long i = 0; i < n; i++) memcpy(on_spheres + 6 * i, pushed + width * i, 3 * sizeof(double));
   sd_rigid_collect(&A->spheres, on_spheres, sd_bodies_count(A), f);
-  if (!A->faces) return SD_OK;
-  memset(share, 0, sizeof(double) * (size_t) sd_bodies_unknowns(A));
-  sd_faces_push(A->faces, n, pushed, share);
+}
+
+sd_status sd_tie_approach_push(const sd_bodies *A, const double *V, double *f)
+{
+  const sd_tie *t = A->tie;
+  const sd_world *world = &t->L->world;
+  const int n = A->spheres.n, width = numbers_seen(A);
+  double *on_spheres = t->rows, *v = t->face, *pushed = pushed_of(A);
+  if (V) sd_rigid_move(&A->spheres, V, on_spheres);
+  for (long i = 0; V && i < n; i++)
+    for (int d = 0; d < 3; d++) v[width * i + d] += on_spheres[6 * i + d];
+  if (world->refresh && world->ranks > 1) {
+    const sd_status status = world->refresh(world->ctx, v, t->faces_there, width);
+    if (status != SD_OK) return status;
+  }
+  memset(pushed, 0, sizeof(double) * (size_t) width * (size_t) n);
+  add_springs(A, width, v, t->faces_there, pushed);
+  if (f) push_bodies(A, on_spheres, f);
   return SD_OK;
+}
+
+void sd_tie_approach_add(const sd_bodies *A, double *l)
+{
+  const double *pushed = pushed_of(A);
+  if (A->faces) sd_faces_push(A->faces, A->spheres.n, pushed, l);
+  else
+    for (long j = 0; j < sd_bodies_unknowns(A); j++) l[j] += pushed[j];
 }

@@ -26,7 +26,7 @@ typedef struct sd_tie {
   /* [others] the copy, among the n_all - n of L, that stands for it */
   int *copy;
   /* X by pairs of L and those beyond, c; by spheres, L_ii and that of K^T X K together; what springs
-   * see of faces and do to them [2 9 spheres], [9 others] */
+   * see of spheres and do to them [2 9 spheres], [9 others], 6 where rows are spheres */
   double *spring, *stiff, *face, *faces_there;
   /* scratch: by bodies, by bodies and others, by spheres, by copies */
   double *vectors, *all, *rows, *copies;

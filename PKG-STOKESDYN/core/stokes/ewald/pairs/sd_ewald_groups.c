@@ -22,6 +22,7 @@ void sd_ewald_groups_free(sd_ewald_groups *g)
   free(g->pair);
   free(g->sphere);
   free(g->form);
+  free(g->end);
   free(g->block);
   memset(g, 0, sizeof(*g));
 }
@@ -254,16 +255,20 @@ static sd_status make_blocks(finder *f)
   const size_t most = (size_t) g->cells.rows;
   if (!sd_reserve(&g->sphere, sizeof(int), most, &g->sphere_room) ||
       !sd_reserve(&g->form, sizeof(int), most, &g->form_room) ||
+      !sd_reserve(&g->end, sizeof(int), most, &g->end_room) ||
       !sd_reserve(&g->block, sizeof(double) * COLUMNS * SD_GROUP_ROW, (size_t) forms, &g->block_room))
     return SD_ENOMEMORY;
   unsigned made = 0;
+  int targets = 0;
   for (int k = 0; k < g->cells.rows; k++) {
     const int form = form_of(f, k), first = g->first[k];
+    if (!is_ghost(f, k)) targets += g->first[k + 1] - first;
     if (form < 0) continue;
     if (!(made >> form & 1))
       make_block(f->pairs, first, g->first[k + 1] - first, g->block + COLUMNS * SD_GROUP_ROW * (long) form);
     made |= 1u << form;
     g->sphere[g->own] = f->pairs->sphere[first];
+    g->end[g->own] = targets;
     g->form[g->own++] = form;
   }
   return SD_OK;
@@ -285,24 +290,23 @@ sd_status sd_ewald_groups_find(sd_ewald_pairs *p, const sd_groups *groups, int n
 }
 
 /* Groups are in order of cells, and their points anywhere in memory. */
-static void fetch_numbers(const double *numbers)
+static void fetch_forces(const double *F)
 {
 #ifdef SD_HAS_VECTORS
   enum { LINE = 8 };
-  for (int d = 0; d < COLUMNS; d += LINE) __builtin_prefetch(numbers + d);
+  for (int d = 0; d < COLUMNS; d += LINE) __builtin_prefetch(F + d);
 #else
-  (void) numbers;
+  (void) F;
 #endif
 }
 
-void sd_ewald_groups_apply(const sd_ewald_pairs *p, const double *F, double *u)
+void sd_ewald_groups_apply(const sd_ewald_pairs *p, int begin, int end, const double *F, double *u)
 {
   enum { AHEAD = 3 };
   const sd_ewald_groups *g = &p->groups;
-  for (int k = 0; k < g->own; k++) {
-    const long i = g->sphere[k], later = g->sphere[k + AHEAD < g->own ? k + AHEAD : k];
-    fetch_numbers(F + 3 * later);
-    fetch_numbers(u + 3 * later);
+  for (int k = begin; k < end; k++) {
+    const long i = g->sphere[k];
+    fetch_forces(F + 3 * (long) g->sphere[k + AHEAD < g->own ? k + AHEAD : k]);
     const double w = p->spheres.w[i];
     p->doubles->own_block(g->block + COLUMNS * SD_GROUP_ROW * (long) g->form[k], w * w, F + 3 * i, u + 3 * i);
   }

@@ -22,8 +22,8 @@ sd_status sd_ewald_groups_find(sd_ewald_pairs *p, const sd_groups *groups, int n
 /* Those near each other, for the kernel that takes them whole */
 sd_near_groups sd_ewald_groups_near(const sd_ewald_pairs *p);
 
-/* u [3 n] += the blocks of F [3 n] */
-void sd_ewald_groups_apply(const sd_ewald_pairs *p, const double *F, double *u);
+/* u [3 n] += the blocks of F [3 n], of groups begin ... end - 1 of those that have one */
+void sd_ewald_groups_apply(const sd_ewald_pairs *p, int begin, int end, const double *F, double *u);
 
 void sd_ewald_groups_free(sd_ewald_groups *g);
 

@@ -25,11 +25,11 @@ typedef struct {
   long *begin;
   sd_near_group *pair;
   size_t begin_room, pair_room;
-  /* groups of ours that have a form: [own] first sphere, and which; [forms][3 SD_GROUP_POINTS]
-   * [SD_GROUP_ROW] the blocks, for w = 1 */
-  int own, *sphere, *form;
+  /* groups of ours that have a form: [own] first sphere, which, and how many targets there are up to its end;
+   * [forms][3 SD_GROUP_POINTS][SD_GROUP_ROW] the blocks, for w = 1 */
+  int own, *sphere, *form, *end;
   double *block;
-  size_t sphere_room, form_room, block_room;
+  size_t sphere_room, form_room, end_room, block_room;
 } sd_ewald_groups;
 
 struct sd_ewald_rows;

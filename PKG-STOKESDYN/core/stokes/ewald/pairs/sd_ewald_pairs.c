@@ -208,6 +208,14 @@ void sd_ewald_pairs_take(const sd_ewald_pairs *p, int n, const double *F, const 
                          const double *tail, const double *sums, double *u)
 {
   if (p->n < n) memset(u, 0, sizeof(double) * (size_t) p->width * (size_t) n); /* some have no radius */
-  p->numbers->take(p, rows, tail, sums, u);
-  sd_ewald_groups_apply(p, F, u);
+  enum { TOGETHER = 8 };    /* so few that their velocities are still in the cache when their blocks follow */
+  const sd_ewald_groups *g = &p->groups;
+  long done = 0;
+  for (int k = 0; k < g->own; k += TOGETHER) {
+    const int end = g->own - k < TOGETHER ? g->own : k + TOGETHER;
+    p->numbers->take(p, done, g->end[end - 1], rows, tail, sums, u);
+    done = g->end[end - 1];
+    sd_ewald_groups_apply(p, k, end, F, u);
+  }
+  p->numbers->take(p, done, p->n, rows, tail, sums, u);
 }

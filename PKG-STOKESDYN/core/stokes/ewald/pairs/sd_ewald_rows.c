@@ -63,14 +63,15 @@ static inline const double *force_on(int m, const sd_ewald_pairs *p, long row, i
   return i < n ? F + m * i : ghosts + m * (i - n);
 }
 
-/* m: the width, of which the compiler makes a copy each */
+/* m: the width, of which the compiler makes a copy each. Sums of sizes are three, which do not wait for each
+ * other. */
 static inline void load_of_width(int m, const sd_ewald_pairs *p, int n, const double *F, const double *ghosts,
                                  double *sums)
 {
   real *row = p->row, *turn = p->torque_row;
   const int *sphere = p->sphere;
   const double scale = p->scale, length = 1.0 / scale;
-  double sum[SD_EWALD_SUMS] = {0.0};
+  double sum[SD_EWALD_SUMS] = {0.0}, size[3] = {0.0};
   for (long k = 0; k < p->rows; k++) {
     const long i = sphere[k];
     real *to = row + 8 * k;
@@ -83,10 +84,11 @@ static inline void load_of_width(int m, const sd_ewald_pairs *p, int n, const do
       else turn[4 * k + d - 3] = (real) (p->unit * scale * f);
       if (i >= n) continue;
       sum[d < 3 ? d : d + 3] += f;
-      sum[SD_EWALD_SIZES] += fabs(d < 3 ? f : scale * f);
+      size[d % 3] += fabs(d < 3 ? f : scale * f);
       if (d < 3) sum[3 + d] += b * f;
     }
   }
+  sum[SD_EWALD_SIZES] = size[0] + size[1] + size[2];
   memcpy(sums, sum, sizeof(sum));
 }
 
@@ -116,37 +118,54 @@ static double self_of(const sd_ewald_pairs *p, double b)
   return p->origin[SD_I0] - 2.0 * b * p->origin[SD_I1] + b * b * p->origin[SD_I2];
 }
 
-static inline void take_of_width(int m, const sd_ewald_pairs *p, const real *waves, const double *tail,
-                                 const double *sums, double *u)
+/* What is beyond the range, as a mean: by (C_0 - b C_1) S - (C_1 - b C_2) S', which is constant but for b */
+typedef struct {
+  double of_all[3], of_b[3], turned[3];
+} far_part;
+
+static far_part far_of(const sd_ewald_pairs *p, const double *C, const double *S)
+{
+  far_part far = {{0.0}, {0.0}, {0.0}};
+  const double over_V = 1.0 / sd_ewald_volume(&p->ewald.box);
+  for (int d = 0; d < 3 && S; d++) {
+    far.of_all[d] = over_V * (C[0] * S[d] - C[1] * S[3 + d]);
+    far.of_b[d] = over_V * (C[1] * S[d] - C[2] * S[3 + d]);
+    far.turned[d] = over_V * 0.25 * C[1] * S[6 + d];
+  }
+  return far;
+}
+
+static inline void take_of_width(int m, const sd_ewald_pairs *p, long begin, long end, const real *waves,
+                                 const double *tail, const double *sums, double *u)
 {
   const real *row = p->row, *turn = p->torque_row, *near = p->u;
   const int step = m == 6 ? 8 : 4;
   const double scale = p->scale, length = 1.0 / scale, alike = self_of(p, 0.0), turned = 0.25 * p->origin[SD_I1];
-  const double over_V = 1.0 / sd_ewald_volume(&p->ewald.box), none[SD_EWALD_SUMS] = {0.0};
-  const double *C = sums ? tail : none, *S = sums ? sums : none;
+  const far_part far = far_of(p, tail, sums);
   const double over_unit = 1.0 / p->unit; /* of a power of two: exact */
-  for (long i = 0; i < p->n; i++) {
+  const double near_unit = scale / (8.0 * SD_PI) * over_unit;
+  for (long i = begin; i < end; i++) {
     const long k = p->target[i], j = p->sphere[k];
-    const double w = row[8 * k + 7], unit = w * scale / (8.0 * SD_PI) * over_unit, wave = w * over_unit;
+    const double w = row[8 * k + 7], unit = w * near_unit, wave = w * over_unit;
     fetch_ahead(m, u + m * (long) p->sphere[p->target[i + AHEAD < p->n ? i + AHEAD : i]]);
     const double b = p->equal ? 0.0 : sd_ewald_b(&p->ewald, row[8 * k + 3] * length);
     const double self = p->equal ? alike : self_of(p, b);
     for (int d = 0; d < m; d++) {
       const double sum = d < 3 ? unit * near[step * k + d] : unit * scale * near[step * k + d + 1];
-      const double far = d < 3 ? (C[0] - b * C[1]) * S[d] - (C[1] - b * C[2]) * S[3 + d] : 0.25 * C[1] * S[3 + d];
+      const double beyond = d < 3 ? far.of_all[d] - b * far.of_b[d] : far.turned[d - 3];
       const double own = d < 3 ? self * row[8 * k + 4 + d] : turned * length * turn[4 * k + d - 3];
       double v = sum - wave * own;
       if (waves) v += wave * waves[m * i + d];
-      u[m * j + d] = v + w * over_V * far;
+      u[m * j + d] = v + w * beyond;
     }
   }
 }
 
-static void rows_take(const sd_ewald_pairs *p, const void *waves, const double *tail, const double *sums,
-                      double *u)
+static void rows_take(const sd_ewald_pairs *p, long begin, long end, const void *waves, const double *tail,
+                      const double *sums, double *u)
 {
-  if (p->width == 6) take_of_width(6, p, waves, tail, sums, u);
-  else take_of_width(3, p, waves, tail, sums, u);
+  if (p->width == 6) take_of_width(6, p, begin, end, waves, tail, sums, u);
+  else take_of_width(3, p, begin, end, waves, tail, sums, u);
 }
 
 #ifdef SD_SINGLE

@@ -14,7 +14,9 @@ struct sd_ewald_rows {
   /* unit w F into the rows, and sums of w F over this rank; the rest as in sd_ewald_pairs.h */
   void (*load)(const sd_ewald_pairs *p, int n, const double *F, const double *ghosts, double *sums);
   void (*of_targets)(const sd_ewald_pairs *p, void *waves);
-  void (*take)(const sd_ewald_pairs *p, const void *waves, const double *tail, const double *sums, double *u);
+  /* of targets begin ... end - 1 */
+  void (*take)(const sd_ewald_pairs *p, long begin, long end, const void *waves, const double *tail,
+               const double *sums, double *u);
 };
 
 extern const struct sd_ewald_rows sd_ewald_rows_doubles, sd_ewald_rows_floats;
