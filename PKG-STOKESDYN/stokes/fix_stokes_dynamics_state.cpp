@@ -29,15 +29,15 @@ void FixStokesDynamicsState::take_away(LAMMPS *lmp)
   memory_of(lmp).take_away();
 }
 
-FixStokesDynamicsState *FixStokesDynamicsState::provide(LAMMPS *lmp, bool rotation, bool history,
+FixStokesDynamicsState *FixStokesDynamicsState::provide(LAMMPS *lmp, bool rotation, bool history, bool lines,
                                                         int points, int most)
 {
   FixStokesDynamicsState *fix = find(lmp);
-  if (fix && fix->rotation == rotation && fix->history == history && fix->shell_points == points &&
-      fix->most_points == most)
+  if (fix && fix->rotation == rotation && fix->history == history && fix->lines == lines &&
+      fix->shell_points == points && fix->most_points == most)
     return fix;
-  const std::string words = std::to_string(rotation) + " " + std::to_string(history) + " " +
-      std::to_string(points) + " " + std::to_string(most);
+  std::string words = std::to_string(rotation);
+  for (int more : {(int) history, (int) lines, points, most}) words += " " + std::to_string(more);
   return static_cast<FixStokesDynamicsState *>(memory_of(lmp).make(words));
 }
 
@@ -48,7 +48,7 @@ static int number(int narg, char **arg, int k)
 
 FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg) :
     RowsFix(lmp, narg, arg), rotation(number(narg, arg, 3)), history(number(narg, arg, 4)),
-    shell_points(number(narg, arg, 5)), most_points(number(narg, arg, 6)),
+    lines(number(narg, arg, 5)), shell_points(number(narg, arg, 6)), most_points(number(narg, arg, 7)),
     rows(shell_points > 0 ? velocities_before() + 6 : of_points()),
     made_at(3), larger{AtomRows(6 * 42), AtomRows(6 * 162), AtomRows(6 * 642)},
     resume(lmp, rotation), left(resume.columns())
@@ -219,6 +219,7 @@ void FixStokesDynamicsState::write_state(NamedState &out)
   out.put("loose", global.loose);
   out.put("open_box", global.open_box);
   out.put("in_axes_of_shells", 1.0);
+  out.put("forces_before", lines);
   out.put("larger_spheres", of_larger_spheres());
   out.put_bits("settings", global.settings);
   out.put_bits("guess", global.guess);
@@ -233,6 +234,9 @@ void FixStokesDynamicsState::read_state(const NamedState &in)
   global.settings = in.get_bits("settings", 0);
   global.guess = in.get_bits("guess", 0);
   set_larger_spheres(in.get("larger_spheres"));
-  if (shell_points > 0 && in.get("in_axes_of_shells", 0.0) == 0.0)
-    global.last_step = -1;    // of a version that kept forces of points in space
+  const bool in_space = shell_points > 0 && in.get("in_axes_of_shells", 0.0) == 0.0;
+  const bool shorter = lines && in.get("forces_before", 0.0) == 0.0;
+  if (!in_space && !shorter) return;    // else it is of a version that kept other numbers
+  global.last_step = -1;
+  global.guess = 0;
 }

@@ -27,7 +27,7 @@ class FixStokesDynamicsState : public RowsFix {
   /* The one of this LAMMPS, nullptr if there is none. Error: a fix of the user's has its ID. */
   static FixStokesDynamicsState *find(LAMMPS_NS::LAMMPS *lmp);
   /* The same, made anew unless it is of this kind. */
-  static FixStokesDynamicsState *provide(LAMMPS_NS::LAMMPS *lmp, bool rotation, bool history,
+  static FixStokesDynamicsState *provide(LAMMPS_NS::LAMMPS *lmp, bool rotation, bool history, bool lines,
                                          int points, int most);
   /* If it is there; in destructors */
   static void take_away(LAMMPS_NS::LAMMPS *lmp);
@@ -36,15 +36,19 @@ class FixStokesDynamicsState : public RowsFix {
   int setmask() override { return 0; }
   void post_run() override;
 
-  /* Columns of a row. BEFORE: v' (and w') of the solve before the last one, where history is
-   * kept. */
-  enum { FORCE = 0, VPRIME = 3, WITHOUT_ROTATION = 6, TORQUE = 6, WPRIME = 9, WITH_ROTATION = 12 };
+  /* Columns of a row. Behind them v' (and w') of the solve before the last one, where history is kept, and
+   * force (and torque) of that, where lines are: spheres are points, and guesses on a line through two
+   * answers. */
+  enum { FORCE = 0, VPRIME = 3, TORQUE = 6, WPRIME = 9 };
   /* Place in a row of component d of the six that begin with FORCE or VPRIME */
   static size_t at(int first, size_t d) { return first + (d < 3 ? d : d + 3); }
-  const bool rotation, history;
-  int before() const { return rotation ? WITH_ROTATION : WITHOUT_ROTATION; }
+  const bool rotation, history, lines;
+  int width() const { return rotation ? 6 : 3; }
+  int before() const { return 2 * width(); }
+  int forces_before() const { return before() + (history ? width() : 0); }
   /* of each sphere, whose forces on the fluid are behind that, in the axes of its shell: 3 columns each;
-   * 0: none. Then those of the solve before, and the velocities that went with them */
+   * 0: none. Then those of the solve before, and the velocities that went with them; of points, these are
+   * in the place of v' before */
   const int shell_points;
   /* of any sphere: those of larger spheres, of another shell, have rows of their own, of their points and
    * those before */
@@ -56,9 +60,9 @@ class FixStokesDynamicsState : public RowsFix {
    * where there are none */
   OfPoints<double> writable_points(int i, int kind, int n);
   OfPoints<const double> points_of(int i, int kind, int n) const;
-  int of_points() const { return before() + (history ? (rotation ? 6 : 3) : 0); }
+  int of_points() const { return forces_before() + (lines ? width() : 0); }
   int of_points_before() const { return of_points() + 3 * shell_points; }
-  int velocities_before() const { return of_points() + 6 * shell_points; }
+  int velocities_before() const { return shell_points > 0 ? of_points() + 6 * shell_points : before(); }
   AtomRows rows;
   /* Atom i has none of them. */
   void erase(int i);
@@ -87,7 +91,7 @@ class FixStokesDynamicsState : public RowsFix {
     double solutions = 0;
     uint64_t guess = 0;
     /* forces of points in the last solve: were they nearer to the line through the two before it
-     * than to the last of these? */
+     * than to the last of these? Where no line is kept, 0 */
     double line = 0;
     /* periodic lengths and tilts as the last run left them */
     double box[6] = {0};

@@ -2,6 +2,9 @@
 
 #include "ranks.h"
 
+#include "atom.h"
+#include "update.h"
+
 #include "sd_hash.h"
 #include "sd_linear.h"
 
@@ -40,6 +43,48 @@ double Guess::solves_kept(Question asked) const
   return now != 0 && now == memory->global.guess ? memory->global.solutions : 0.0;
 }
 
+/* On the line through the last two answers (1), or as the last one was (0): an atom that had none before is no
+ * line's */
+static double on_line(double line, double last, double before)
+{
+  return before != 0.0 ? last + line * (last - before) : last;
+}
+
+/* An answer takes the place of the last one, and this that of the one before; and which of them, or the line
+ * through them, it was nearer to. Where a run begins, spheres stand as in the step before: then it takes the place
+ * of the last one alone, and the line is good if it is nearer to that one than the one before was. */
+struct Guess::Answer {
+  const bool again;
+  double off_last = 0.0, off_line = 0.0;
+
+  void take(double now, double unit, double &last, double &before)
+  {
+    const double change = (now - last) / unit, along = (on_line(1.0, last, before) - last) / unit;
+    off_last += again ? along * along : change * change;
+    off_line += again ? change * change : (change - along) * (change - along);
+    if (!again) before = last;
+    last = now;
+  }
+};
+
+Guess::Answer Guess::answer(double kept) const
+{
+  return {kept > 0.0 && update->setupflag};
+}
+
+/* Is the next guess on the line? The same on all ranks */
+void Guess::choose(const Answer &found, double kept)
+{
+  double off[2] = {found.off_last, found.off_line};
+  MPI_Allreduce(MPI_IN_PLACE, off, 2, MPI_DOUBLE, MPI_SUM, world);
+  memory->global.line = (found.again ? memory->global.line != 0.0 : kept > 1.0) && off[1] < off[0];
+}
+
+double Guess::line() const
+{
+  return update->setupflag ? 0.0 : memory->global.line;
+}
+
 Guess::Start Guess::none() const
 {
   const size_t n = scene.size(), points = shells.settings.on() ? shells.first_of_rows()[n] : 0;
@@ -52,13 +97,11 @@ Guess::Start Guess::recall(Question asked) const
   if (solves_kept(asked) == 0.0) return none();
   Start start = {true, {}, std::vector<double>(width() * (scene.size() + 1), 0.0)};
   if (shells.settings.on())
-    start.l = recall_points(memory->global.line);
+    start.l = recall_points(line());
   else if (asked == FORCES)
     start.l = recall_forces();
   else
-    start.l = scene.rows((int) width(), [&](int i, double *out) {
-      for (size_t d = 0; d < width(); d++) out[d] = -memory->rows[i][State::at(State::FORCE, d)];
-    });
+    start.l = recall_spheres(line());
   if (asked == MOTIONS && settings.lubrication.on) start.v = recall_motions();
   return start;
 }
@@ -70,16 +113,13 @@ void Guess::keep(Question asked, const Found &found)
   if (asked == FORCES)
     keep_perturbation(found.exerted);
   else
-    keep_motions(found.v);
+    keep_motions(found.v, kept);
   if (shells.settings.on() && scene.anybody_sees())
-    keep_points(found.l, kept > 1.0);
+    keep_points(found.l, kept);
   else if (!shells.settings.on() && asked != FORCES)
-    scene.to_atoms((int) width(), found.l.data(), [&](int i, const double *row) {
-      for (size_t d = 0; d < width(); d++)
-        memory->rows.row(i)[State::at(State::FORCE, d)] = -row[d];
-    });
+    keep_spheres(found.l, kept);
   global.guess = number(asked);
-  global.solutions = std::min(2.0, kept + 1.0);
+  global.solutions = answer(kept).again ? kept : std::min(2.0, kept + 1.0);
 }
 
 // --- where velocities are given --------------------------------------------------------------------
@@ -128,27 +168,55 @@ void Guess::keep_perturbation(const std::vector<double> &exerted)
 std::vector<double> Guess::recall_motions() const
 {
   const size_t m = width();
-  const double line = shells.settings.on() ? memory->global.line : 0.0;
+  const double line = this->line();
+  const size_t at_before = line != 0.0 ? memory->velocities_before() : 0;
   return scene.rows((int) m, [&](int i, double *out) {
-    const double *row = memory->rows[i], *before = row + memory->velocities_before();
-    for (size_t d = 0; d < m; d++) {
-      out[d] = row[State::at(State::VPRIME, d)];
-      if (line != 0.0) out[d] += line * (out[d] - before[d]);
-    }
+    const double *row = memory->rows[i], *before = row + at_before;
+    for (size_t d = 0; d < m; d++) out[d] = on_line(line, row[State::at(State::VPRIME, d)], before[d]);
   });
 }
 
-void Guess::keep_motions(const std::vector<double> &v)
+void Guess::keep_motions(const std::vector<double> &v, double kept)
 {
   const size_t m = width();
+  Answer found = answer(kept);
   scene.to_atoms((int) m, v.data(), [&](int i, const double *now) {
     double *row = memory->rows.writable(i);
     for (size_t d = 0; d < m && settings.lubrication.on; d++) {
       double &last = row[State::at(State::VPRIME, d)];
-      if (memory->shell_points > 0) row[memory->velocities_before() + (int) d] = last;
-      last = now[d];
+      if (lines())
+        found.take(now[d], 1.0, last, row[memory->velocities_before() + (int) d]);
+      else
+        last = now[d];
     }
   });
+}
+
+/* Of spheres that are points, their forces on the fluid: the memory has those on the spheres. */
+std::vector<double> Guess::recall_spheres(double line) const
+{
+  const size_t at_before = line != 0.0 ? memory->forces_before() : 0;
+  return scene.rows((int) width(), [&](int i, double *out) {
+    const double *row = memory->rows[i], *before = row + at_before;
+    for (size_t d = 0; d < width(); d++)
+      out[d] = -on_line(line, row[State::at(State::FORCE, d)], before[d]);
+  });
+}
+
+void Guess::keep_spheres(const std::vector<double> &l, double kept)
+{
+  Answer found = answer(kept);
+  scene.to_atoms((int) width(), l.data(), [&](int i, const double *now) {
+    double *row = memory->rows.row(i), *before = row + memory->forces_before();
+    for (size_t d = 0; d < width(); d++) {
+      double &last = row[State::at(State::FORCE, d)];
+      if (lines())
+        found.take(-now[d], d < 3 ? 1.0 : atom->radius[i], last, before[d]);
+      else
+        last = -now[d];
+    }
+  });
+  if (lines()) choose(found, kept);
 }
 
 void Guess::turn(int i, const double R[9])
@@ -159,8 +227,10 @@ void Guess::turn(int i, const double R[9])
     sd_multiply3(R, was, v);
   };
   for (int first : {State::FORCE, State::TORQUE, State::VPRIME, State::WPRIME}) turn(row + first);
-  for (int half : {0, 3})
-    if (memory->shell_points > 0) turn(row + memory->velocities_before() + half);
+  for (int half = 0; half < memory->width() && lines(); half += 3) {
+    turn(row + memory->velocities_before() + half);
+    if (memory->lines) turn(row + memory->forces_before() + half);
+  }
 }
 
 // --- of shells, forces of their points ---------------------------------------------------------------
@@ -188,7 +258,7 @@ std::vector<double> Guess::recall_points(double line) const
     const auto read = [&](int i, double *out) {
       const auto of = memory->points_of(i, kind, n);
       for (int d = 0; d < 3 * n; d++)
-        out[d] = of.now ? of.now[d] + line * (of.now[d] - of.before[d]) : 0.0;
+        out[d] = of.now ? on_line(line, of.now[d], of.before[d]) : 0.0;
     };
     scene.rows_to(3 * n, read, [&](size_t k) {
       return kinds[k] == kind ? &found_then[3 * (size_t) first[k]] : nullptr;
@@ -198,13 +268,13 @@ std::vector<double> Guess::recall_points(double line) const
   return found_then;
 }
 
-void Guess::keep_points(const std::vector<double> &l, bool line_is_known)
+void Guess::keep_points(const std::vector<double> &l, double kept)
 {
   if (memory->shell_points == 0) return;
   const int *first = shells.first_of_rows(), *kinds = shells.kinds_of_rows();
   std::vector<double> of_points = l;
   turn_points(of_points, true);
-  double off[2] = {0.0, 0.0};    // from the last, from the line
+  Answer found = answer(kept);
   for (int kind = 0; kind < shells.kinds(); kind++) {
     const int n = shells.model(kind).n;
     const auto at = [&](size_t k) {
@@ -212,17 +282,10 @@ void Guess::keep_points(const std::vector<double> &l, bool line_is_known)
     };
     scene.some_to_atoms(3 * n, at, [&](int i, const double *row) {
       const auto of = memory->writable_points(i, kind, n);
-      for (int d = 0; d < 3 * n && of.now; d++) {
-        const double change = row[d] - of.now[d], bend = change - (of.now[d] - of.before[d]);
-        off[0] += change * change;
-        off[1] += bend * bend;
-        of.before[d] = of.now[d];
-        of.now[d] = row[d];
-      }
+      for (int d = 0; d < 3 * n && of.now; d++) found.take(row[d], 1.0, of.now[d], of.before[d]);
     });
   }
-  MPI_Allreduce(MPI_IN_PLACE, off, 2, MPI_DOUBLE, MPI_SUM, world);
-  memory->global.line = line_is_known && off[1] < off[0];
+  choose(found, kept);
 }
 
 }    // namespace StokesDyn

@@ -2,7 +2,8 @@
  * atoms through migration and restarts. What is kept depends on what a solve was asked,
  *
  *   FORCES    what others add to the drag, v' = F/D - s, of the last two solves
- *   MOTIONS   with films the velocities that were found; where spheres are points, their forces
+ *   MOTIONS   with films the velocities that were found; where spheres are points, their forces; of the
+ *             last two solves
  *   of both   where spheres are shells the forces of their points on the fluid, of the last two solves, in
  *             the axes of the shell, so that they turn with it
  *
@@ -61,6 +62,13 @@ class Guess : protected LAMMPS_NS::Pointers {
   const Shells &shells;
   const StokesSettings &settings;
 
+  struct Answer;
+  /* Are guesses of motions on lines through two answers? */
+  bool lines() const { return memory->lines || memory->shell_points > 0; }
+  Answer answer(double kept) const;
+  void choose(const Answer &found, double kept);
+  /* 1: the next guess is on it; 0: it is the last answer */
+  double line() const;
   size_t width() const { return settings.scene.rotation ? 6 : 3; }
   uint64_t number(Question asked) const;
   double solves_kept(Question asked) const;
@@ -68,8 +76,10 @@ class Guess : protected LAMMPS_NS::Pointers {
   std::vector<double> recall_motions() const;
   std::vector<double> recall_points(double line) const;
   void keep_perturbation(const std::vector<double> &exerted);
-  void keep_motions(const std::vector<double> &v);
-  void keep_points(const std::vector<double> &l, bool line_is_known);
+  void keep_motions(const std::vector<double> &v, double kept);
+  std::vector<double> recall_spheres(double line) const;
+  void keep_spheres(const std::vector<double> &l, double kept);
+  void keep_points(const std::vector<double> &l, double kept);
   void turn_points(std::vector<double> &l, bool back) const;
 };
 

@@ -215,7 +215,7 @@ void PairStokesDynamics::init_style()
   const Shells::Settings &shells = hydro.settings.shells;
   const int points = shells.on() && hydro.settings.warm_start ? shells.points : 0;
   const int most = points > 0 && !shells.alike() ? shells.most : 0;
-  State::provide(lmp, scene.rotation, hydro.settings.history(), points, most)
+  State::provide(lmp, scene.rotation, hydro.settings.history(), hydro.settings.lines(), points, most)
       ->settings_are(words_of_now());
   look_for_fixes();
   check_layer(voice, hydro.settings, hydro.overdamped);

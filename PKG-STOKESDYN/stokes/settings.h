@@ -40,6 +40,12 @@ struct StokesSettings {
   /* Are solutions kept, from which the next solve begins? Substitution begins from 0, but it hands over to
    * gradients. */
   bool history() const { return warm_start && !strict; }
+  /* Is the guess of motions of spheres that are points on a line through two solutions? Free spheres without
+   * films need none */
+  bool lines() const
+  {
+    return history() && !shells.on() && (lubrication.on || (rigid.on && !rigid.each_alone()));
+  }
 
  private:
   std::string grid_file;

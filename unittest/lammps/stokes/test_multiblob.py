@@ -189,19 +189,20 @@ def test_a_solve_begins_where_the_last_one_ended(simulation):
     assert products[0] <= 3 < 0.6 * products[1]
 
 
-def test_guesses_do_not_add_up_the_errors_of_answers(simulation):
+@pytest.mark.parametrize("points", ["multiblob 12", "rotation yes"])
+def test_guesses_do_not_add_up_the_errors_of_answers(simulation, points):
     """Between exact answers the line is within the tolerance, so one product a step is enough. With answers to the
-    tolerance it is as well, where their errors fade from guess to guess (sd_bodies.c)."""
+    tolerance it is as well, where their errors fade from guess to guess (sd_bodies.c), and in runs of one step too."""
     rows = rows_of("bidisperse.csv", load="weight_z")
     side, products = float(rows[0]["box"]), []
     sim = simulation(Spheres(columns(rows, "x y z") % side, columns(rows, "a")[:, 0]),
-                     "cut_off_distance inf visc 1 multiblob 12 lubrication yes", fix=False, dt=0.004, boundary="p p p",
+                     f"cut_off_distance inf visc 1 {points} lubrication yes", fix=False, dt=0.004, boundary="p p p",
                      box=[(0.0, side)] * 3, comm="neighbor 0.1 bin")
     sim.commands([f"fix weight all addforce 0 0 {-P6!r}", MOVE]).run(4, "post no")
-    for _ in range(20):
-        sim.run(1, "pre no post no")
+    for begin in ["no"] * 20 + ["yes"] * 3:
+        sim.run(1, f"pre {begin} post no")
         products.append(sim.fix_vector("move")[3])
-    assert products == [1] * 20
+    assert products == [1] * 23
 
 
 def test_radii_too_different_for_films(simulation):

@@ -11,9 +11,11 @@ from without_inertia import ALL, FIX, P6, THREE, contacts, mixed, weight
 
 WAYS = {"spheres": "cut_off_distance inf visc 1.1 rotation yes",
         "spheres by list": "cut_off_distance 9 taper wendland visc 1.1",
-        "clumps": "cut_off_distance inf visc 1.1 rotation yes rigid_clumps yes",
-        "clumps with shells": "cut_off_distance inf visc 1.1 rigid_clumps yes shell 12 fluid_velocity v_u 0 0",
-        "clumps by list": "cut_off_distance 9 taper wendland visc 1.1 rotation yes rigid_clumps yes",
+        "clumps": "cut_off_distance inf visc 1.1 rotation yes rigid_clumps yes relative_tolerance 1e-12",
+        "clumps with shells": "cut_off_distance inf visc 1.1 rigid_clumps yes shell 12 fluid_velocity v_u 0 0 "
+                              "relative_tolerance 1e-12",
+        "clumps by list": "cut_off_distance 9 taper wendland visc 1.1 rotation yes rigid_clumps yes "
+                          "relative_tolerance 1e-12",
         "close spheres": "cut_off_distance inf visc 1.1 rotation yes lubrication yes relative_tolerance 1e-12",
         "close clumps": "cut_off_distance inf visc 1.1 rigid_clumps yes shell 12 fluid_velocity v_u 0 0 "
                         "lubrication yes lubrication_gap 1e-2 relative_tolerance 1e-12",

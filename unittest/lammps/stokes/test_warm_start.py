@@ -128,6 +128,22 @@ def test_warm_start_survives_a_restart(simulation, tmp_path, precondition, molec
     assert np.abs(np.hstack([sim.x, sim.v, sim.drag]) - expected).max() < 1e-10
 
 
+def test_a_guess_turns_with_its_clump(simulation):
+    """Rods that fall and turn: a step takes one product since the last two answers turn with them, two without."""
+    n = 3
+    places = 7.0 * np.indices((n, n, n)).reshape(3, -1).T[:, None] + [(-2, 0, 0), (0, 0, 0), (2, 0, 0)]
+    sim = simulation(Spheres(places.reshape(-1, 3), molecule=1 + np.arange(3 * n**3) // 3),
+                     f"cut_off_distance inf visc {1 / (6 * np.pi)} rotation yes rigid_clumps yes", fix=False, dt=0.01,
+                     boundary="p p p", box=[(0.0, 7.0 * n)] * 3, comm="neigh_modify exclude molecule/intra all")
+    sim.commands(["variable fx atom 2*cos(mol)*(id-3*mol+1)", "variable fz atom 2*sin(mol)*(id-3*mol+1)",
+                  "fix pull all addforce v_fx v_fz -1", "fix move all stokes_dynamics/overdamped"]).run(4, "post no")
+    products = []
+    for _ in range(10):
+        sim.run(1, "pre no post no")
+        products.append(sim.fix_vector("move")[3])
+    assert products == [1] * 10
+
+
 # What a solve was asked before, of the same spheres: forces from velocities that are nearly those asked for then;
 # motions with random numbers that are small
 ASKED_BEFORE = {"forces": ["fix before all stokes_dynamics apply no"],

@@ -158,19 +158,18 @@ static void take_loads(sd_bodies_loop *c)
   for (long j = 0; j < sd_bodies_motions(c); j++) c->f[j] += c->bodies[j];
 }
 
-/* What the next guess takes of the last z, where it will be on the line through two answers, as that of shells
- * is. Errors of answers live on in such a guess: e' = g (2 e - e_before) with g = 1 - part lambda, lambda an
- * eigenvalue of the preconditioned matrix. With part 0 they grow from step to step until a product of its own
- * takes them away. They fade for g between -1/3 and 1, so for lambda up to 4 / (3 part). Free bodies have
- * lambda up to about 4.5 (films, volume fraction 0.45); those that are held disturb each other from afar, and
- * lambda grows with their number.
+/* What the next guess takes of the last z, where it will be on the line through two answers. Errors of answers
+ * live on in such a guess: e' = g (2 e - e_before) with g = 1 - part lambda, lambda an eigenvalue of the
+ * preconditioned matrix. With part 0 they grow from step to step until a product of its own takes them away. They
+ * fade for g between -1/3 and 1, so for lambda up to 4 / (3 part). Free bodies have lambda up to about 4.5 (films,
+ * volume fraction 0.45); those that are held disturb each other from afar, and lambda grows with their number.
  * Source: the predictor that is always stable of Kolafa, J. Comput. Chem. 25, 335 (2004). */
 static const double taken_up = 0.25;
 
 static void leave_guess(const sd_bodies_loop *c, const sd_bodies_answer *answer)
 {
   const sd_bodies *A = c->A;
-  const double part = A->points.whole && !A->known ? taken_up : 0.0;
+  const double part = A->known ? 0.0 : taken_up;
   const double *V = sd_bodies_motion_of(c, c->v.x), *dV = sd_bodies_motion_of(c, c->v.z);
   for (long j = 0; j < sd_bodies_unknowns(A); j++) answer->l[j] = c->v.x[j] + part * c->v.z[j];
   if (!A->tie) return;

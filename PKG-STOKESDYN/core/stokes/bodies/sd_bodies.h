@@ -68,8 +68,9 @@ typedef struct {
 
 /* What comes out, in arrays of the caller */
 typedef struct {
-  /* [points] forces on the fluid, as the last product left them: as a guess they give the same V
-   * again. Those of free shells are a step of the preconditioner further */
+  /* [points] forces on the fluid. Of bodies of which some are held they are as the last product left them:
+   * as a guess they give the same V again. Where all are free they are a part of a step of the
+   * preconditioner further */
   double *l;
   /* with a tie, [spheres]: the velocities that go with l in a guess */
   double *v_with_l;
