@@ -164,23 +164,29 @@ void Guess::keep_perturbation(const std::vector<double> &exerted)
 
 // --- where loads are given -------------------------------------------------------------------------
 
-/* Velocities stand in the place of v', which has no other use in such a run; films alone ask for them. */
+/* Velocities less those of the fluid stand in the place of v', which has no other use in such a run; films alone
+ * ask for them. In a box that shears the velocity of a sphere that crosses its border jumps, and so does that of
+ * the fluid. */
 std::vector<double> Guess::recall_motions() const
 {
   const size_t m = width();
   const double line = this->line();
   const size_t at_before = line != 0.0 ? memory->velocities_before() : 0;
-  return scene.rows((int) m, [&](int i, double *out) {
+  std::vector<double> v = scene.rows((int) m, [&](int i, double *out) {
     const double *row = memory->rows[i], *before = row + at_before;
     for (size_t d = 0; d < m; d++) out[d] = on_line(line, row[State::at(State::VPRIME, d)], before[d]);
   });
+  for (size_t j = 0; j < m * scene.size(); j++) v[j] += bodies.flow[j];
+  return v;
 }
 
 void Guess::keep_motions(const std::vector<double> &v, double kept)
 {
   const size_t m = width();
   Answer found = answer(kept);
-  scene.to_atoms((int) m, v.data(), [&](int i, const double *now) {
+  std::vector<double> relative = v;
+  for (size_t j = 0; j < m * scene.size(); j++) relative[j] -= bodies.flow[j];
+  scene.to_atoms((int) m, relative.data(), [&](int i, const double *now) {
     double *row = memory->rows.writable(i);
     for (size_t d = 0; d < m && settings.lubrication.on; d++) {
       double &last = row[State::at(State::VPRIME, d)];

@@ -2,8 +2,8 @@
  * atoms through migration and restarts. What is kept depends on what a solve was asked,
  *
  *   FORCES    what others add to the drag, v' = F/D - s, of the last two solves
- *   MOTIONS   with films the velocities that were found; where spheres are points, their forces; of the
- *             last two solves
+ *   MOTIONS   with films the velocities that were found, less those of the fluid; where spheres are points,
+ *             their forces; of the last two solves
  *   of both   where spheres are shells the forces of their points on the fluid, of the last two solves, in
  *             the axes of the shell, so that they turn with it
  *

@@ -144,6 +144,25 @@ def test_a_guess_turns_with_its_clump(simulation):
     assert products == [1] * 10
 
 
+@pytest.mark.parametrize("points", ["rotation yes", "multiblob 12"])
+def test_a_guess_goes_with_the_fluid_across_the_border_of_a_box_that_shears(simulation, points):
+    """A sphere that crosses it, and its velocity with it, jumps; what it does against the fluid goes on."""
+    n, rng = 3, np.random.default_rng(5)
+    x = 2.5 * (np.indices((n, n, n)).reshape(3, -1).T + 0.9) + rng.uniform(-0.2, 0.2, (n**3, 3))
+    words = f"cut_off_distance inf visc {1 / (6 * np.pi)} fluid_velocity box lubrication yes {points}"
+    sim = simulation(Spheres(x % (2.5 * n)), words, fix=False, dt=0.002, boundary="p p p", box=[(0.0, 2.5 * n)] * 3,
+                     tilt=(0.0, 0.0, 0.0), comm="neigh_modify delay 0 every 1 check no")
+    sim.commands(["fix shear all deform 1 xy erate 0.5 remap none", "fix pull all addforce 0 25 0",
+                  "fix move all stokes_dynamics/overdamped"]).run(4, "post no")
+    products, crossed, y = [], 0, sim.x[:, 1]
+    for _ in range(15):
+        sim.run(1, "pre no post no")
+        products.append(sim.fix_vector("move")[3])
+        crossed += np.sum(np.abs(sim.x[:, 1] - y) > n)
+        y = sim.x[:, 1]
+    assert crossed > 0 and max(products) <= 2
+
+
 # What a solve was asked before, of the same spheres: forces from velocities that are nearly those asked for then;
 # motions with random numbers that are small
 ASKED_BEFORE = {"forces": ["fix before all stokes_dynamics apply no"],
