@@ -75,7 +75,8 @@ static int place_of(int n)
 
 FixStokesDynamicsState::OfPoints<double> FixStokesDynamicsState::writable_points(int i, int kind, int n)
 {
-  if (kind == 0) return {rows.writable(i) + of_points(), rows.writable(i) + of_points_before()};
+  double *smallest = rows.writable(i);    // of all that take part
+  if (kind == 0) return {smallest + of_points(), smallest + of_points_before()};
   if (!has_larger()) return {nullptr, nullptr};
   double *row = larger[place_of(n)].writable(i);
   return {row, row + 3 * n};

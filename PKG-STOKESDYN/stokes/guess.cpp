@@ -87,15 +87,16 @@ double Guess::line() const
 
 Guess::Start Guess::none() const
 {
-  const size_t n = scene.size(), points = shells.settings.on() ? shells.first_of_rows()[n] : 0;
-  const std::vector<double> zeros(width() * (n + 1), 0.0);
-  return {false, shells.settings.on() ? std::vector<double>(3 * points + 3, 0.0) : zeros, zeros};
+  const size_t n = scene.size(), of_spheres = width() * (n + 1);
+  const size_t of_points = shells.settings.on() ? 3 * (size_t) shells.first_of_rows()[n] + 3 : of_spheres;
+  return {false, std::vector<double>(of_points), std::vector<double>(settings.lubrication.on ? of_spheres : 0)};
 }
 
 Guess::Start Guess::recall(Question asked) const
 {
-  if (solves_kept(asked) == 0.0) return none();
-  Start start = {true, {}, std::vector<double>(width() * (scene.size() + 1), 0.0)};
+  const bool needless = asked == MOTIONS && settings.forces_are_loads() && !bodies.bodies.known;
+  if (needless || solves_kept(asked) == 0.0) return none();
+  Start start = {true, {}, {}};
   if (shells.settings.on())
     start.l = recall_points(line());
   else if (asked == FORCES)
@@ -112,7 +113,7 @@ void Guess::keep(Question asked, const Found &found)
   const double kept = solves_kept(asked);
   if (asked == FORCES)
     keep_perturbation(found.exerted);
-  else
+  else if (settings.lubrication.on)
     keep_motions(found.v, kept);
   if (shells.settings.on() && scene.anybody_sees())
     keep_points(found.l, kept);
@@ -188,7 +189,7 @@ void Guess::keep_motions(const std::vector<double> &v, double kept)
   for (size_t j = 0; j < m * scene.size(); j++) relative[j] -= bodies.flow[j];
   scene.to_atoms((int) m, relative.data(), [&](int i, const double *now) {
     double *row = memory->rows.writable(i);
-    for (size_t d = 0; d < m && settings.lubrication.on; d++) {
+    for (size_t d = 0; d < m; d++) {
       double &last = row[State::at(State::VPRIME, d)];
       if (lines())
         found.take(now[d], 1.0, last, row[memory->velocities_before() + (int) d]);
@@ -213,7 +214,7 @@ void Guess::keep_spheres(const std::vector<double> &l, double kept)
 {
   Answer found = answer(kept);
   scene.to_atoms((int) width(), l.data(), [&](int i, const double *now) {
-    double *row = memory->rows.row(i), *before = row + memory->forces_before();
+    double *row = memory->rows.writable(i), *before = row + memory->forces_before();
     for (size_t d = 0; d < width(); d++) {
       double &last = row[State::at(State::FORCE, d)];
       if (lines())
@@ -227,6 +228,7 @@ void Guess::keep_spheres(const std::vector<double> &l, double kept)
 
 void Guess::turn(int i, const double R[9])
 {
+  if (!memory->rows.has(i)) return;
   double *row = memory->rows.row(i);
   const auto turn = [R](double *v) {
     const double was[3] = {v[0], v[1], v[2]};

@@ -250,21 +250,17 @@ void Scene::gather()
     double x[3], a, w;
     int64_t tag, molecule;
   };
-  const auto here = [this](size_t k) {
-    return Sphere{{x[3 * k], x[3 * k + 1], x[3 * k + 2]}, a[k], w[k], tags[k], molecules[k]};
-  };
   std::vector<Sphere> told;    // of one rank nobody need be
-  for (size_t k = 0; k < tags.size() && comm->nprocs > 1; k++) told.push_back(here(k));
+  for (size_t k = 0; k < tags.size() && comm->nprocs > 1; k++)
+    told.push_back({{x[3 * k], x[3 * k + 1], x[3 * k + 2]}, a[k], w[k], tags[k], molecules[k]});
   if (comm->nprocs > 1) told = from_all(world, told);
-  const auto sphere = [&](size_t j) { return comm->nprocs > 1 ? told[j] : here(j); };
+  const auto tag_of = [&](size_t j) { return comm->nprocs > 1 ? told[j].tag : tags[j]; };
   spheres_of_rank = from_all(world, std::vector<int>(1, size()));
   n_all = comm->nprocs > 1 ? (int) told.size() : size();
   if (!sorted.is(epochs.rows)) {
     std::vector<int> by_tag(n_all);
     for (int j = 0; j < n_all; j++) by_tag[j] = j;
-    std::sort(by_tag.begin(), by_tag.end(), [&sphere](int p, int q) {
-      return sphere(p).tag < sphere(q).tag;
-    });
+    std::sort(by_tag.begin(), by_tag.end(), [&](int p, int q) { return tag_of(p) < tag_of(q); });
     place_of.resize(n_all);
     for (int k = 0; k < n_all; k++) place_of[by_tag[k]] = k;
     sorted.set(epochs.rows);
@@ -272,14 +268,17 @@ void Scene::gather()
   all_x.resize(3 * (size_t) n_all);
   for (auto *v : {&all_a, &all_w}) v->resize(n_all);
   all_molecule.resize(n_all);
-  for (int j = 0; j < n_all; j++) {
-    const Sphere s = sphere(j);
+  const auto put = [&](size_t j, const double *place, double radius, double fluid, int64_t of_clump) {
     const size_t k = place_of[j];
-    copy<3>(s.x, &all_x[3 * k]);
-    all_a[k] = s.a;
-    all_w[k] = s.w;
-    all_molecule[k] = s.molecule;
-  }
+    copy<3>(place, &all_x[3 * k]);
+    all_a[k] = radius;
+    all_w[k] = fluid;
+    all_molecule[k] = of_clump;
+  };
+  if (comm->nprocs > 1)
+    for (size_t j = 0; j < told.size(); j++) put(j, told[j].x, told[j].a, told[j].w, told[j].molecule);
+  else
+    for (size_t j = 0; j < tags.size(); j++) put(j, &x[3 * j], a[j], w[j], molecules[j]);
 }
 
 void Scene::to_cloud(const double *own_rows, double *cloud_rows, int width, const int *first)

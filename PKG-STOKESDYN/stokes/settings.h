@@ -40,12 +40,13 @@ struct StokesSettings {
   /* Are solutions kept, from which the next solve begins? Substitution begins from 0, but it hands over to
    * gradients. */
   bool history() const { return warm_start && !strict; }
-  /* Is the guess of motions of spheres that are points on a line through two solutions? Free spheres without
-   * films need none */
-  bool lines() const
+  /* Are spheres points that bear nothing but their loads, unless they are held? Then there is nothing to solve */
+  bool forces_are_loads() const
   {
-    return history() && !shells.on() && (lubrication.on || (rigid.on && !rigid.each_alone()));
+    return !shells.on() && !lubrication.on && !(rigid.on && !rigid.each_alone());
   }
+  /* Is the guess of motions of spheres that are points on a line through two solutions? */
+  bool lines() const { return history() && !shells.on() && !forces_are_loads(); }
 
  private:
   std::string grid_file;

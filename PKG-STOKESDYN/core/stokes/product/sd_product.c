@@ -37,14 +37,14 @@ static extent extent_of(const sd_packed *p)
   extent e = {0.0, INFINITY, {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 1};
   for (int i = 0; i < p->n; i++) {
     if (!(a[i] > 0.0)) continue;
-    e.largest = fmax(e.largest, a[i]);
-    e.smallest = fmin(e.smallest, a[i]);
+    if (a[i] > e.largest) e.largest = a[i];
+    if (a[i] < e.smallest) e.smallest = a[i];
     double x[3];
     sd_wall_stand(&p->law.wall, p->spheres.x + 3 * (long) i, a[i], x);
     for (int d = 0; d < 3; d++) {
       e.sound = e.sound && fabs(x[d]) < INFINITY;
-      e.lo[d] = fmin(e.lo[d], x[d]);
-      e.hi[d] = fmax(e.hi[d], x[d]);
+      if (x[d] < e.lo[d]) e.lo[d] = x[d];
+      if (x[d] > e.hi[d]) e.hi[d] = x[d];
     }
   }
   return e;
