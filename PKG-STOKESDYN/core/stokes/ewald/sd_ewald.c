@@ -150,15 +150,26 @@ static void end_at_band(sd_ewald *e, const splitting *by, double near)
   e->sized = 1;
 }
 
+static sd_status level_of(sd_ewald *e, const splitting *by)
+{
+  double near;
+  split(e, by, &near);
+  const sd_status status = sd_ewald_lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
+  if (status == SD_OK && by->fall == BAND) end_at_band(e, by, near);
+  return status;
+}
+
 static sd_status one_level(sd_ewald *e, fall how, const sd_ewald_class *s, int width, double most)
 {
   splitting by = splitting_for(how, s, width, most);
-  double near;
   by.at_wall = e->images.wall.sign != 0;
-  split(e, &by, &near);
-  const sd_status status = sd_ewald_lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
-  if (status == SD_OK && how == BAND) end_at_band(e, &by, near);
-  return status;
+  const sd_status status = level_of(e, &by);
+  if (status != SD_OK || !sd_splitting_five_may_do(e, &by)) return status;
+  sd_ewald five;
+  memcpy(&five, e, sizeof(five)); /* all bytes: the engine compares them */
+  by.five = 1;
+  if (level_of(&five, &by) == SD_OK && sd_splitting_five_do(&five)) memcpy(e, &five, sizeof(five));
+  return SD_OK;
 }
 
 sd_status sd_ewald_gaussian(const sd_ewald_box *box, const sd_ewald_class *s, int width,

@@ -25,6 +25,8 @@ typedef struct {
   int tall;
   /* are there images in a wall of an open box? */
   int at_wall;
+  /* unlike spheres with windows of five points (sd_splitting_five_do) */
+  int five;
 } splitting;
 
 /* The tolerance t after what large spheres and torques lose: those larger than 1/xi have large wave and near
@@ -49,6 +51,10 @@ double sd_splitting_gaussian_spacing(double xi, double y);
 int sd_splitting_points(double t);
 int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, double t);
 double sd_splitting_beta(const sd_ewald *e, const splitting *by);
+
+/* Where the rule asks for six points: would five do, and what came of these, is it within the tolerance? */
+int sd_splitting_five_may_do(const sd_ewald *e, const splitting *by);
+int sd_splitting_five_do(const sd_ewald *e);
 
 /* What this window mistakes of the flow that all spheres of an open box have in common under random
  * forces, over F/(6 pi eta a): it grows as N^(1/6). 0 in a periodic box, which has no such flow */

@@ -184,8 +184,8 @@ typedef struct {
 } two_sizes;
 
 /* Error over the tolerance under random forces that are as large as radii: of U over rms of F/(6 pi a), of W over rms
- * of T/(8 pi a^3); the larger of both */
-static double error_of_two_sizes(const two_sizes *s)
+ * of T/(8 pi a^3); the larger of both. how, out: what was chosen */
+static double error_of_two_sizes(const two_sizes *s, sd_ewald *how)
 {
   enum { MOST = 3000 };
   static double x[3 * MOST], a[MOST], F[6 * MOST], u[2][6 * MOST];
@@ -198,8 +198,8 @@ static double error_of_two_sizes(const two_sizes *s)
   for (int i = 0; i < 3 * s->n; i++) x[i] = uniform(&seed, 0, box.edge[0]);
   for (int i = 0; i < s->width * s->n; i++)
     F[i] = uniform(&seed, -1, 1) * pow(a[i / s->width], i % s->width < 3 ? 1.0 : 2.0);
-  for (int tight = 0; tight < 2; tight++)
-    sum_to((tight ? 0.03 : 1.0) * tolerance, &box, x, a, s->n, s->width, F, u[tight]);
+  *how = sum_to(tolerance, &box, x, a, s->n, s->width, F, u[0]);
+  sum_to(0.03 * tolerance, &box, x, a, s->n, s->width, F, u[1]);
   for (int i = 0; i < s->width * s->n; i++) {
     const int spin = i % s->width >= 3;
     const double A = a[i / s->width];
@@ -215,7 +215,8 @@ static double error_of_two_sizes(const two_sizes *s)
 
 static void all_keep_the_tolerance(const two_sizes *scenes, int many)
 {
-  for (int k = 0; k < many; k++) assert_true(error_of_two_sizes(scenes + k) < 1.0);
+  sd_ewald how;
+  for (int k = 0; k < many; k++) assert_true(error_of_two_sizes(scenes + k, &how) < 1.0);
 }
 
 /* Near parts of 800 neighbours have polynomials that are right to less than a tenth of the tolerance. As Gaussians the
@@ -237,6 +238,20 @@ static void unlike_spheres_keep_the_tolerance(void **state)
                               {1500, 3, 8, 0.125, 3, 0.5},  {1500, 3, 9, 0.85, 2.2, 0.07}, {3000, 3, 6, 0.01, 30, 0.2},
                               {3000, 3, 9, 0.01, 10, 0.2}};
   all_keep_the_tolerance(scenes, 7);
+}
+
+/* With windows of five points the denser scene would be above its tolerance. Without a beta and a range of their own
+ * they would be for spheres that are smaller by a fifth. */
+static void five_points_do_where_unlike_spheres_are_not_large(void **state)
+{
+  (void) state;
+  const two_sizes loose = {1500, 3, 3, 0.125, 3, 0.1}, dense = {1500, 3, 3, 0.125, 3, 0.2};
+  sd_ewald how;
+  assert_true(error_of_two_sizes(&loose, &how) < 1.0);
+  assert_int_equal(how.points, 5);
+  assert_true(how.band * how.largest > 2.5);
+  assert_true(error_of_two_sizes(&dense, &how) < 1.0);
+  assert_int_equal(how.points, 6);
 }
 
 /* Equal forces add up what the range cuts off; its mean is put back. Without that the error is three times the
@@ -288,6 +303,7 @@ int main(void)
       cmocka_unit_test(torques_are_no_better_than_asked),
       cmocka_unit_test(equal_spheres_keep_the_tightest_tolerances),
       cmocka_unit_test(unlike_spheres_keep_the_tolerance),
+      cmocka_unit_test(five_points_do_where_unlike_spheres_are_not_large),
       cmocka_unit_test(equal_forces_are_no_worse),
       cmocka_unit_test(equal_forces_on_a_lattice_are_seven_times_worse),
   };
