@@ -123,10 +123,9 @@ CLASHES = [(RESTARTS, tuple(STYLES), lambda o: o["model of"] == "vans",
 
 # (changes, where, tolerance, why): what matters, but not much
 COARSE = [
-    (TURNS + ("renumbered", "members"), lambda o: o.get("model", "").startswith("multiblob") or
-     o.get("rigid") == "shell", 0.2,
-     "the points of a shell stand in the axes x, y, z, or in those of the clump that had its shape first"),
-    (TURNS + ("renumbered", "members"), lambda o: o.get("drive") == "squirm" and o.get("clumps"), 1.0,
+    (TURNS, lambda o: o.get("model", "").startswith("multiblob") or o.get("rigid") == "shell", 0.2,
+     "the points of a free sphere's shell stand in the axes x, y, z"),
+    (TURNS, lambda o: o.get("drive") == "squirm" and o.get("clumps"), 1.0,
      "and the slip of a swimmer that overlaps another one pushes on those few points of it that are near"),
 ]
 

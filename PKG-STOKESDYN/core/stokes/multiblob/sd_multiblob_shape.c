@@ -85,6 +85,21 @@ static void along_line(const double u[3], double E[9])
   }
 }
 
+/* turn of a shell whose mirrors are across the columns of E. There are two such turns, a quarter turn apart. With
+ * this one a chain of five that moves along a wall, a tenth of a radius from it, is off by 0.3 % with 12 points,
+ * with the other by 3.4 %; two clumps that are pushed apart by 1.4 % at most (3.2 %). */
+static void by_mirrors(const double E[9], double turn[9])
+{
+  double A[9], back[9];
+  sd_multiblob_axes(A);
+  for (int d = 0; d < 3; d++) {
+    back[d] = -A[3 * d + 1];
+    back[3 + d] = A[3 * d];
+    back[6 + d] = A[3 * d + 2];
+  }
+  sd_product3(E, back, turn);
+}
+
 void sd_multiblob_shape_stand(const sd_multiblob_shape *s, const double R[9], double pose[9],
                               double turn[9])
 {
@@ -96,11 +111,11 @@ void sd_multiblob_shape_stand(const sd_multiblob_shape *s, const double R[9], do
   }
   memcpy(turn, unity, sizeof unity);
   if (s->rank == 1) {
-    const double line[3] = {T[0], T[3], T[6]};
-    double u[3];
-    sd_multiply3(R, line, u);
+    double u[3], E[9];
+    sd_multiply3(R, s->line, u);
     sd_normalize(u);
-    along_line(u, turn);
+    along_line(u, E);
+    by_mirrors(E, turn);
   }
   const double back[9] = {T[0], T[3], T[6], T[1], T[4], T[7], T[2], T[5], T[8]};
   sd_product3(turn, back, pose);
@@ -140,16 +155,23 @@ static sd_status find_faces(const sd_multiblob *m, sd_multiblob_shape *s)
   return SD_OK;
 }
 
-/* How the shells of a clump stand in its own axes */
+/* How the shells of a clump stand in its own axes. The mirrors of its icosahedra are the planes across its
+ * main axes, or across the line: then a clump that half a turn or one of these mirrors maps onto itself has
+ * points that they map onto points. Else its frame says which of its images counts, by the order of the
+ * spheres. */
 static void take_frame(const sd_shape *clump, sd_multiblob_shape *out)
 {
   const double unity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  double E[9];
   out->rank = clump ? clump->rank : 0;
-  memcpy(out->turn, clump && clump->rank > 0 ? clump->frame : unity, sizeof unity);
-  if (out->rank == 1) {
-    const double *E = clump->frame, line[3] = {E[0], E[3], E[6]};
-    along_line(line, out->turn);
-  }
+  memcpy(out->turn, unity, sizeof unity);
+  if (out->rank == 0) return;
+  for (int d = 0; d < 3; d++) out->line[d] = clump->frame[3 * d];
+  if (out->rank == 1)
+    along_line(out->line, E);
+  else if (!sd_shape_main_axes(clump, E))
+    memcpy(E, clump->frame, sizeof E);
+  by_mirrors(E, out->turn);
 }
 
 /* mask and first, and the shape of the spheres s, whose turn [9 spheres] and kinds stand */

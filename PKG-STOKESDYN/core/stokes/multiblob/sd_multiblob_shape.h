@@ -17,9 +17,9 @@ typedef struct {
   /* [spheres] */
   int spheres;
   sd_multiblob_mask *mask;
-  /* [9] how the shells of a clump stand in its own axes, by its frame; unity for a free sphere.
-   * rank: of the clump, 0 1 2 (sd_shape.h) */
-  double turn[9];
+  /* [9] how the shells of a clump stand in its own axes; unity for a free sphere. rank: of the clump, 0 1 2
+   * (sd_shape.h); line: its direction, of rank 1 */
+  double turn[9], line[3];
   int rank;
   /* [points.m] row of each point among those of the spheres of the body, which begin at
    * first [spheres + 1] */

@@ -68,6 +68,19 @@ double sd_shape_pose(const sd_shape *s, const double *x, double R[9], double c[3
   return sqrt(worst);
 }
 
+int sd_shape_main_axes(const sd_shape *s, double E[9])
+{
+  const double *w = s->squares, gap = 0.01 * w[0], weight[3] = {1.0, sqrt(2.0), sqrt(3.0)};
+  if (s->rank < 2 || w[0] - w[1] < gap || w[1] - w[2] < gap) return 0;
+  double up[3];
+  sd_multiply3(s->frame, weight, up);
+  for (int m = 0; m < 3; m++) {
+    const double *e = s->axes + 3 * m, sign = sd_dot(e, up) < 0.0 ? -1.0 : 1.0;
+    for (int d = 0; d < 3; d++) E[3 * d + m] = sign * e[d];
+  }
+  return 1;
+}
+
 double sd_shape_fastest(const sd_shape *s, const double from[3], const double U[3], const double W[3], double most)
 {
   const double reach = s->size + sqrt(sd_dot(from, from));
