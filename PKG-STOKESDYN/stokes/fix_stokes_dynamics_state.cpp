@@ -9,6 +9,7 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <unordered_map>
 
 using namespace LAMMPS_NS;
@@ -212,12 +213,32 @@ void FixStokesDynamicsState::set_larger_spheres(const std::vector<double> &all)
   }
 }
 
+/* All atoms; molecule IDs, as two halves that doubles hold, and their atoms on all ranks */
+std::vector<double> FixStokesDynamicsState::members_now() const
+{
+  if (!rigid) return {};
+  struct Part {
+    int64_t molecule, atoms;
+  };
+  std::map<int64_t, int64_t> here, all;
+  std::vector<Part> mine;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->molecule[i] != 0) here[atom->molecule[i]]++;
+  for (const auto &of : here) mine.push_back({of.first, of.second});
+  for (const Part &part : from_all(world, mine)) all[part.molecule] += part.atoms;
+  std::vector<double> numbers = {(double) atom->natoms};
+  for (const auto &of : all)
+    numbers.insert(numbers.end(), {(double) (of.first >> 32), (double) (of.first & 0xffffffff), (double) of.second});
+  return numbers;
+}
+
 void FixStokesDynamicsState::write_state(NamedState &out)
 {
   if (within_run()) present_box(global.box);
   out.put("time", time());
   out.put("places_box", global.made_in_box);
   out.put("loose", global.loose);
+  out.put("members", members_now());
   out.put("open_box", global.open_box);
   out.put("in_axes_of_shells", 1.0);
   out.put("forces_before", lines);
@@ -231,6 +252,7 @@ void FixStokesDynamicsState::read_state(const NamedState &in)
   global.time_before = in.get("time", time()) - lammps_time(update);
   global.made_in_box = in.get("places_box");
   global.loose = in.get("loose");
+  global.members = in.get("members");
   global.open_box = in.get("open_box");
   global.settings = in.get_bits("settings", 0);
   global.guess = in.get_bits("guess", 0);

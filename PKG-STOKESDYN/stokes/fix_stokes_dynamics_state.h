@@ -68,6 +68,8 @@ class FixStokesDynamicsState : public RowsFix {
   void erase(int i);
   /* where spheres stood when the preconditioner was made (preconditioner.h) */
   AtomRows made_at;
+  /* are clumps rigid? Then a restart file says how many atoms each molecule has */
+  bool rigid = false;
 
   /* The same on all ranks. A step of -1: never. */
   struct Global {
@@ -102,6 +104,8 @@ class FixStokesDynamicsState : public RowsFix {
     /* kept for those who know what they mean */
     TimeStepGuard::State guard;
     std::vector<double> made_in_box, loose, open_box;
+    /* as a restart file says, until a run has looked (RigidClumps::set_members) */
+    std::vector<double> members;
   } global;
 
   /* Of this step, since the first run: it goes on after a restart. */
@@ -119,6 +123,7 @@ class FixStokesDynamicsState : public RowsFix {
 
   bool has_larger() const { return shell_points > 0 && most_points > shell_points; }
   std::vector<double> of_larger_spheres() const;
+  std::vector<double> members_now() const;
   void set_larger_spheres(const std::vector<double> &all);
   void forget();
   void record(int i) override;

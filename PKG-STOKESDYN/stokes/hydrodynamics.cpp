@@ -130,6 +130,8 @@ void Hydrodynamics::new_run(bool as_left)
     rigid.set_loose(memory->global.loose);
   else
     rigid.new_run();
+  rigid.set_members(memory->global.members);
+  memory->global.members.clear();
 }
 
 /* Forces of rigid clumps, and the v' that they stand for. Spheres of other clumps, and lone ones,

@@ -215,8 +215,9 @@ void PairStokesDynamics::init_style()
   const Shells::Settings &shells = hydro.settings.shells;
   const int points = shells.on() && hydro.settings.warm_start ? shells.points : 0;
   const int most = points > 0 && !shells.alike() ? shells.most : 0;
-  State::provide(lmp, scene.rotation, hydro.settings.history(), hydro.settings.lines(), points, most)
-      ->settings_are(words_of_now());
+  State *state = State::provide(lmp, scene.rotation, hydro.settings.history(), hydro.settings.lines(), points, most);
+  state->settings_are(words_of_now());
+  state->rigid = hydro.settings.rigid.on;
   look_for_fixes();
   check_layer(voice, hydro.settings, hydro.overdamped);
   refuse_moving_box(voice, scene.boundary);

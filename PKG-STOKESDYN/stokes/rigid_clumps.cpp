@@ -24,6 +24,7 @@ RigidClumps::RigidClumps(const Voice &voice, WholeClumps &whole, const Epochs &e
 void RigidClumps::forget()
 {
   new_run();
+  members_in_file.clear();
   bodies.clear();
   shapes.clear();
 }
@@ -50,6 +51,15 @@ void RigidClumps::set_loose(const std::vector<double> &ids)
   loose_molecules.clear();
   for (size_t k = 0; k + 1 < ids.size(); k += 2)
     loose_molecules.insert((int64_t) ids[k] * 4294967296 + (int64_t) ids[k + 1]);
+  recognised.never();
+}
+
+void RigidClumps::set_members(const std::vector<double> &numbers)
+{
+  if (numbers.empty()) return;
+  atoms_in_file = (bigint) numbers[0];
+  for (size_t k = 1; k + 2 < numbers.size(); k += 3)
+    members_in_file[(int64_t) numbers[k] * 4294967296 + (int64_t) numbers[k + 1]] = (int) numbers[k + 2];
   recognised.never();
 }
 
@@ -123,12 +133,21 @@ void RigidClumps::loosen(const std::vector<int64_t> &molecules)
   }
 }
 
+/* Clumps, of any rank, that are not what they were: an error that tells of the first, or auto has them. */
+void RigidClumps::let_go(const std::vector<int64_t> &mine, void (RigidClumps::*tell)(int64_t) const)
+{
+  const std::vector<int64_t> molecules = from_all(world, mine);
+  if (molecules.empty()) return;
+  if (!settings.auto_resolve) (this->*tell)(*std::min_element(molecules.begin(), molecules.end()));
+  loosen(molecules);
+}
+
 /* After a re-neighbouring: which shape has each clump of this rank? */
 void RigidClumps::recognise()
 {
   shapes.drop_unsolved();
   std::vector<size_t> unknown;
-  std::vector<int64_t> changed;
+  std::vector<int64_t> changed = smaller_than_in_file();
   for (size_t c = 0; c < whole.clumps.size(); c++) {
     const auto &clump = whole.clumps[c];
     if (loose_molecules.count(clump.molecule)) continue;
@@ -140,11 +159,7 @@ void RigidClumps::recognise()
   }
   int64_t count[3] = {(int64_t) unknown.size(), (int64_t) changed.size(), (int64_t) known.size()};
   MPI_Allreduce(MPI_IN_PLACE, count, 3, MPI_LMP_BIGINT, MPI_MAX, world);
-  if (count[1]) {
-    changed = from_all(world, changed);
-    if (!settings.auto_resolve) other_atoms(*std::min_element(changed.begin(), changed.end()));
-    loosen(changed);
-  }
+  if (count[1]) let_go(changed, &RigidClumps::other_atoms);
   if (count[0]) {
     const size_t before = shapes.count();
     radius = whole.gather(1, [this](int i, double *out) { *out = atom->radius[i]; });
@@ -153,6 +168,21 @@ void RigidClumps::recognise()
     if (shapes.count() > before || !count[2]) drop_unused();
   }
   arrange();
+}
+
+/* If atoms have been deleted since the restart file was written, and the motion without inertia goes on from it:
+ * molecules of this rank that have fewer than they had */
+std::vector<int64_t> RigidClumps::smaller_than_in_file()
+{
+  std::vector<int64_t> smaller;
+  const bool deleted = atom->natoms < atoms_in_file && must_stay_rigid();
+  for (const auto &clump : whole.clumps) {
+    const auto before = members_in_file.find(clump.molecule);
+    if (deleted && before != members_in_file.end() && clump.end - clump.begin < before->second)
+      smaller.push_back(clump.molecule);
+  }
+  members_in_file.clear();
+  return smaller;
 }
 
 uint64_t RigidClumps::atoms_of(const WholeClumps::Clump &clump) const
@@ -168,7 +198,7 @@ void RigidClumps::take_over(std::vector<size_t> &unknown)
     uint64_t atoms;
     int shape;
   };
-  std::vector<int64_t> wanted, bent;
+  std::vector<int64_t> wanted, changed, bent;
   for (size_t c : unknown) wanted.push_back(whole.clumps[c].molecule);
   std::vector<Has> have;
   for (int64_t molecule : from_all(world, wanted)) {
@@ -190,14 +220,14 @@ void RigidClumps::take_over(std::vector<size_t> &unknown)
     Known &k = known[clump.molecule];
     k.shape = shapes.at(has->second.shape);
     k.atoms = atoms_of(clump);
-    if (k.atoms != has->second.atoms || !ClumpShapes::fits(k.shape->shape, geometry(clump), k.perm))
+    if (k.atoms != has->second.atoms)
+      changed.push_back(clump.molecule);
+    else if (!ClumpShapes::fits(k.shape->shape, geometry(clump), k.perm))
       bent.push_back(clump.molecule);
   }
   unknown.swap(still_unknown);
-  bent = from_all(world, bent);
-  if (bent.empty()) return;
-  if (!settings.auto_resolve) not_rigid(*std::min_element(bent.begin(), bent.end()));
-  loosen(bent);
+  let_go(changed, &RigidClumps::other_atoms);
+  let_go(bent, &RigidClumps::not_rigid);
 }
 
 /* Shapes for clumps that have been nowhere yet; new ones where none of the present shapes fits.

@@ -44,6 +44,9 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
    * ranks. */
   std::vector<double> loose() const;
   void set_loose(const std::vector<double> &ids);
+  /* Of a restart file, if there is anything: all its atoms, and then molecule IDs, two numbers each, and
+   * their atoms */
+  void set_members(const std::vector<double> &numbers);
   bool any_loose() const { return !loose_molecules.empty(); }
 
   /* A clump of this rank's; its spheres, in the order of the shape, are begin ... begin + n - 1 of
@@ -82,6 +85,9 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   };
   std::map<int64_t, Known> known;    // by molecule ID: clumps that this rank owns
   std::set<int64_t> loose_molecules;
+  /* in a restart file, until clumps have been looked at: all atoms, and those of each molecule */
+  LAMMPS_NS::bigint atoms_in_file = 0;
+  std::map<int64_t, int> members_in_file;
   /* the members for which they have been (Epochs::members) */
   Stamp recognised;
 
@@ -95,11 +101,13 @@ class RigidClumps : protected LAMMPS_NS::Pointers {
   uint64_t atoms_of(const WholeClumps::Clump &clump) const;
   ClumpGeometry geometry(const WholeClumps::Clump &clump) const;
   void take_over(std::vector<size_t> &unknown);
+  std::vector<int64_t> smaller_than_in_file();
   void find_shapes(std::vector<size_t> unknown);
   void accept(const std::vector<double> &candidates);
   void drop_unused();
   void arrange();
   void loosen(const std::vector<int64_t> &molecules);
+  void let_go(const std::vector<int64_t> &mine, void (RigidClumps::*tell)(int64_t) const);
   [[noreturn]] void not_rigid(int64_t molecule) const;
   [[noreturn]] void other_atoms(int64_t molecule) const;
   bool must_stay_rigid() const;

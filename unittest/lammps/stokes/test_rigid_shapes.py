@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from model import forces, same_clump
-from system import Spheres, dump_lines, input_lines, lmp, lmp_in_turn, read_dump
+from system import Spheres, dump_lines, from_restart, input_lines, lmp, lmp_in_turn, read_dump
 from test_rigid_clumps import SOLVED, WIDE, many, rotation_matrix
 from test_rotation import CLUSTERS, resistance
 
@@ -215,6 +215,25 @@ def test_lost_atom_is_an_error(simulation):
     sim.commands(LOSE.format(*spheres.x[2]))
     with pytest.raises(Exception, match="molecule 3 has gained or lost atoms"):
         sim.run(5)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("from_file", [False, True], ids=["script", "restart"])
+def test_a_clump_that_loses_an_atom_between_two_runs_without_inertia_is_an_error(tmp_path, from_file, ranks):
+    """All of a molecule, which is fine, and one atom of another. From a file the run went on; on two ranks the clump
+    was told to have bent."""
+    spheres, _ = many("square", 2)
+    lines = input_lines(spheres, "clumps_only yes rigid_clumps yes rotation yes visc 1.3", tmp_path / "data", comm=WIDE,
+                        fix=False, dt=1e-6)
+    fix = "fix move all stokes_dynamics/overdamped"
+    cut = [fix, "group whole molecule 13", "delete_atoms group whole", "run 0", "group gone id 2",
+           "delete_atoms group gone", "run 1"]
+    runs = [lines + [fix, "run 1", "write_restart half.restart"]]
+    runs = runs + [from_restart(lines) + cut[:3] + cut[4:]] if from_file else [runs[0] + cut[1:]]
+    for one in runs:
+        ended = lmp(tmp_path, one, ranks, succeed=False)
+    text = " ".join(ended.text.split())
+    assert ended.code != 0 and "the clump of molecule 3 has gained or lost atoms, so it is not rigid" in text
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
