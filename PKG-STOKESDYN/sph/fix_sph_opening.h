@@ -21,6 +21,7 @@ class FixSphOpening : public SphFix {
 
   /* Of a particle of the group at x: does it stand in the layer? */
   bool holds(const double *x) const { return beyond(x) > 0.0; }
+  bool is_held(int i) const;
   /* Has the layer a pressure that is given to it? */
   virtual bool gives_pressure() const = 0;
   /* That of this step; all ranks. Then that of particle i, in the layer. */
@@ -32,7 +33,6 @@ class FixSphOpening : public SphFix {
   /* the words FACE POSITION WIDTH, which come first */
   Keywords parse_place(int narg, char **arg);
   double beyond(const double *x) const { return side * (x[axis] - plane); }
-  bool is_held(int i) const;
 
   /* 0 1 2; 1: the layer is at the upper end of the flow, -1: at the lower one */
   int axis = 0, side = 1;

@@ -184,6 +184,8 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair> {
   void check_stiffness();
   void check_groups();
   void check_openings();
+  void check_layers() const;
+  std::vector<FixSphOpening *> openings() const;
   LAMMPS_NS::tagint in_both(int bits, int more_bits) const;
 
   // Neighbours with their memory, as sd_sph_both.
@@ -224,6 +226,7 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair> {
   void look_at_sound();
   void look_at_widths();
   void look_at_plane();
+  void look_at_idlers();
   void look_at_fluids();
   void prepare();
   bool types_are_alike();

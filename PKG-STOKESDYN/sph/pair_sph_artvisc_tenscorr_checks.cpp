@@ -3,6 +3,7 @@
 
 #include "fix_sph_settings.h"
 #include "fix_wall_sph.h"
+#include "fixes.h"
 #include "keywords.h"
 #include "ranks.h"
 #include "sd_sph_step.h"
@@ -170,6 +171,26 @@ void PairSph::look_at_plane()
     voice.fail("in two dimensions all particles must stand in one plane, and they stand from z = " + text(low) +
                " to " + text(high) + ": make the box thinner along z than the spacing of the lattice, of which "
                "create_atoms of an older LAMMPS makes as many planes as have room");
+}
+
+/* Whom no fix gives a density or a place: neither water nor a wall. */
+void PairSph::look_at_idlers()
+{
+  const int kept = leapfrog_bits | Sph::groups(fixes_of(lmp, "sph")) | Sph::groups(fixes_of(lmp, "sph/stationary"));
+  if (!continuity || update->nsteps == 0) return;
+  double idle = 0.0;
+  tagint first = MAXTAGINT;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!used(atom->type[i]) || is_wall(i) || (atom->mask[i] & kept)) continue;
+    idle++;
+    first = std::min(first, atom->tag[i]);
+  }
+  idle = sum_of_all(world, idle);
+  first = smallest_of_all(world, first);
+  if (idle > 0.0)
+    voice.warn(text(idle) + " particles, the first is atom " + std::to_string(first) +
+               ", are in the group of no fix nve/sph, nve/sph/stationary or wall/adami/sph: they act as water whose "
+               "density never changes, which is no wall; give particles of walls to fix wall/adami/sph");
 }
 
 /* Without volume yes a particle takes the mass of a neighbour for that of its own fluid. */

@@ -237,12 +237,17 @@ void PairSph::check_groups()
                        "is moved by fix rigid or fix move, and one that bends cannot be a wall");
 }
 
-/* Open ends move and delete particles of the fluid that nve/sph integrates. */
-void PairSph::check_openings()
+std::vector<FixSphOpening *> PairSph::openings() const
 {
   std::vector<FixSphOpening *> all(inlets.begin(), inlets.end());
   all.insert(all.end(), outlets.begin(), outlets.end());
-  for (const auto *fix : all) {
+  return all;
+}
+
+/* Open ends move and delete particles of the fluid that nve/sph integrates. */
+void PairSph::check_openings()
+{
+  for (const auto *fix : openings()) {
     if (!leapfrog) fix->voice.fail("needs fix sph/density/continuity and fix nve/sph");
     if (const tagint other = first_atom(lmp, [&](int i) {
           return (atom->mask[i] & fix->groupbit) && (!(atom->mask[i] & own_vest_bits) || is_wall(i));
@@ -251,6 +256,18 @@ void PairSph::check_openings()
                       " of its group is not moved by fix nve/sph: the group must be that of the fluid, "
                       "without walls");
   }
+}
+
+/* When each of them is known to stand at an end of the flow */
+void PairSph::check_layers() const
+{
+  const std::vector<FixSphOpening *> all = openings();
+  for (size_t k = 0; k < all.size(); k++)
+    for (size_t m = 0; m < k; m++)
+      if (const tagint both = first_atom(lmp, [&](int i) { return all[k]->is_held(i) && all[m]->is_held(i); }))
+        all[k]->voice.fail("atom " + std::to_string(both) + " stands in the layer of fix " + all[k]->id +
+                           " and in that of fix " + all[m]->id + ": leave one of them out, or give each a group of "
+                           "its own");
 }
 
 /* The first atom in both of these sets of groups, 0: there is none. */
@@ -263,6 +280,7 @@ tagint PairSph::in_both(int bits, int more_bits) const
  * hybrid of their types. */
 void PairSph::setup()
 {
+  check_layers();
   neighbourhood.look(voice, sph_neighbours(), (continuity ? CONTINUITY : 0u) | (grains ? GRAINS : 0u) |
                     (fixes_of(lmp, FixSphTension::STYLE).empty() ? 0u : TENSION), [this](int i) {
     if (!used(atom->type[i]))

@@ -39,6 +39,7 @@ void PairSph::compute(int eflag, int vflag)
     look_at_sound();
     look_at_widths();
     look_at_plane();
+    look_at_idlers();
     look_at_fluids();
     if (wall) look_at_walls();
     if (wall) tell_of_belts();

@@ -87,12 +87,12 @@ def ids(case):
     return re.sub(r"\W+", "-", f"{case[1]} {case[-1]}")
 
 
-def said(tmp_path, lines):
-    """The error and the warnings of a run of no steps."""
+def said(tmp_path, lines, steps=0):
+    """The error and the warnings of a run."""
     log = tmp_path / "log"
     sim = Simulation(tmp_path, log=log)
     try:
-        sim.commands(lines + ["run 0"])
+        sim.commands(lines + [f"run {steps}"])
         error = ""
     except LammpsError as stop:
         error = str(stop)
@@ -141,3 +141,15 @@ def test_viscosity_that_damps_sound_lets_fix_sph_be(tmp_path):
 def test_particles_of_a_wall_may_meet_a_wall_of_lammps(tmp_path):
     error, warnings = said(tmp_path, scene() + ["fix b walls wall/reflect xhi EDGE"])
     assert not error and "is no wall" not in warnings
+
+
+IDLE = " particles, the first is atom 49, are in the group of no fix nve/sph, nve/sph/stationary or wall/adami/sph"
+
+
+@pytest.mark.parametrize("change, steps, says", [
+    (("fix floor walls wall/adami/sph", ""), 1, True), (("fix floor walls wall/adami/sph", ""), 0, False),
+    (("fix floor walls wall/adami/sph", "fix floor walls nve/sph/stationary"), 1, False), (("", ""), 1, False)])
+def test_a_floor_that_no_fix_makes_a_wall_is_warned_of(tmp_path, change, steps, says):
+    """Its particles acted as water at rest, without a word. A run of no steps needs no integration."""
+    error, warnings = said(tmp_path, [line.replace(*change) for line in scene()], steps)
+    assert error == "" and (IDLE in warnings) == says

@@ -310,6 +310,23 @@ def test_bad_input(change, words):
     assert words in message(scene.replace(*change) + "run 1")
 
 
+@pytest.mark.parametrize("other, first", [("sph/inlet xlo 0 0.7 velocity 1", "in"), ("sph/outlet xlo 0 0.7", "in"),
+                                          ("sph/inlet xhi 1 0.7 velocity 1", "out")])
+def test_two_openings_on_one_layer_are_an_error_that_names_both(other, first):
+    """Two inlets made particles at one place, and an inlet with an outlet went on."""
+    text = message(PIPE + OPEN.format(1) + f"fix too all {other}\nrun 1")
+    assert "stands in the layer of fix" in text and "fix too" in text and f"fix {first} " in text.replace(":", " ")
+
+
+def test_two_inlets_of_two_groups_share_a_layer():
+    half = "region low block INF INF INF 0.3 INF INF units box\ngroup low region low\ngroup high subtract all low\n"
+    lmp = start()
+    run(lmp, PIPE + half + OPEN.format(1).replace("fix in all", "fix in low") +
+        "fix too high sph/inlet xlo 0 0.7 velocity 1\nrun 40 post no")
+    assert lmp.extract_fix("in", 0, 0) == pytest.approx(lmp.extract_fix("too", 0, 0)) == pytest.approx(0.06, abs=1e-9)
+    lmp.close()
+
+
 def test_an_empty_layer_is_an_error():
     assert "its layer is empty" in message(PIPE + "region b block -1 0 INF INF INF INF units box\n"
                                                   "delete_atoms region b\n" + OPEN.format(1) + "run 1")
