@@ -274,6 +274,9 @@ void Noise::refuse(const Hydrodynamics &hydro, const Ways &ways) const
   if (!atom->tag_enable)
     keyword.fail("the noise of an atom depends on its ID, and there are no IDs: atom_modify id "
                  "yes");
+  if (update->dt < 0.0)
+    keyword.fail("the time step " + text(update->dt) + " is negative, and displacements of Brownian motion grow with "
+                 "its root: give a positive one (command timestep)");
   if (ways.adapts)
     keyword.fail("averages over steps of unequal length are not averages over time: leave out "
                  "adapt");

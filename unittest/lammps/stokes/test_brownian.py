@@ -400,6 +400,7 @@ INF = f"cut_off_distance inf visc {ETA}"
                                              "equal style: one value for all"),
                                             ("temperature v_minus 5", "'-2' must be >= 0, in step 0"),
                                             ("temperature 1 5 adapt 1 1e-3 1 1", "leave out adapt"),
+                                            ("temperature 1 5\ntimestep -0.001", "the time step -0.001 is negative"),
                                             ("temperature 1 5 held some scheme ab2",
                                              "keyword held: the mobility has a drift"),
                                             ("noise_tolerance 0.1", "keyword noise_tolerance requires a temperature")])
