@@ -34,6 +34,16 @@ int sd_isa_supported(sd_isa isa);
 #endif
 #endif
 
+/* What stands there will be wanted soon: it is brought into the cache, where that can be asked for. */
+static inline void sd_fetch(const void *address)
+{
+#ifdef SD_HAS_VECTORS
+  __builtin_prefetch(address);
+#else
+  (void) address;
+#endif
+}
+
 /* The name of a table in its own file */
 #define SD_KERNELS(name) SD_TABLE_NAME(name, SD_SET)
 #define SD_TABLE_NAME(name, set) SD_TABLE_JOIN(name, set)

@@ -41,10 +41,11 @@ struct sd_elimination {
   node *node;
   float *pivot;
   int *queue;
-  /* entries of columns, and room for them; of one column: where products go, and which block that
-   * is */
+  /* entries of columns, and room for them; of one column: the entries, where products go, and which block
+   * that is */
   long entries;
-  size_t row_room, column_room, most_targets, most_target_blocks;
+  size_t row_room, column_room, most_columns, most_targets, most_target_blocks;
+  float *column;
   sd_block_target *target;
   int *target_block;
 };
@@ -60,7 +61,7 @@ static int reserve_nodes(sd_block_cholesky *f, int n)
   if (!sd_grow(&w->node, sizeof(node), room) || !sd_grow(&w->queue, sizeof(int), room) ||
       !sd_grow(&w->pivot, sizeof(float) * SD_BLOCK, room) ||
       !sd_grow(&f->first, sizeof(long), room) || !sd_grow(&f->order, sizeof(int), room) ||
-      !sd_grow(&f->inverse, sizeof(float) * SD_BLOCK, room) ||
+      !sd_grow(&f->inverse, sizeof(float) * SD_BLOCK_KEPT, room) ||
       !sd_grow(&f->vector, sizeof(float) * SD_BLOCK_LANES, room))
     return 0;
   w->nodes = (int) room;
@@ -81,7 +82,8 @@ static int reserve_entries(sd_block_cholesky *f, int more)
   struct sd_elimination *w = f->work;
   const size_t entries = (size_t) (w->entries + more) + 1;
   return sd_extend(&f->row, sizeof(int), entries, &w->row_room) &&
-      sd_extend(&f->column, sizeof(float) * SD_BLOCK, entries, &w->column_room) &&
+      sd_extend(&f->column, sizeof(float) * SD_BLOCK_KEPT, entries, &w->column_room) &&
+      sd_reserve(&w->column, sizeof(float) * SD_BLOCK, (size_t) more, &w->most_columns) &&
       sd_reserve(&w->target, sizeof(*w->target), (size_t) more, &w->most_targets) &&
       sd_reserve(&w->target_block, sizeof(int), (size_t) more, &w->most_target_blocks);
 }
@@ -229,6 +231,14 @@ static void transpose(const float *A, float *out)
       out[SD_BLOCK_LANES * r + c] = c < 6 ? A[SD_BLOCK_LANES * c + r] : 0.0f;
 }
 
+/* A node stands anywhere in memory, its block and its list elsewhere: they are fetched before it is its turn. */
+static void fetch_node(const struct sd_elimination *w, int q)
+{
+  enum { LINE = 16 };
+  sd_fetch(w->end + w->node[q].list);
+  for (int k = 0; k < SD_BLOCK; k += LINE) sd_fetch(pivot_of(w, q) + k);
+}
+
 /* Column of p: its neighbours q, which leave their queues, and A_pq. Returns their number, -1
  * without memory. */
 static int take_column(sd_block_cholesky *f, int p)
@@ -239,7 +249,7 @@ static int take_column(sd_block_cholesky *f, int p)
   const end_of_edge *list = w->end + w->node[p].list;
   for (int k = 0; k < m; k++) {
     const end_of_edge e = list[k];
-    float *A = f->column + SD_BLOCK * (w->entries + k);
+    float *A = w->column + SD_BLOCK * (long) k;
     if (e.turned)
       transpose(cholesky_block_of(w, e.block), A);
     else
@@ -247,6 +257,7 @@ static int take_column(sd_block_cholesky *f, int p)
     cholesky_give_back(w, e.block);
     f->row[w->entries + k] = e.node;
     leave_queue(w, e.node);
+    fetch_node(w, e.node);
   }
   return m;
 }
@@ -292,23 +303,26 @@ static sd_status eliminate(sd_block_cholesky *f, int k, int p, float drop)
 {
   struct sd_elimination *w = f->work;
   leave_queue(w, p);
+  if (w->node[p].after >= 0) fetch_node(w, w->node[p].after); /* most often the next */
   const long begin = w->entries;
   const int m = take_column(f, p);
   if (m < 0) return SD_ENOMEMORY;
   w->entries += m;
   f->order[k] = p;
   f->first[k + 1] = w->entries;
-  float *pivot = pivot_of(w, p), *column = f->column + SD_BLOCK * begin;
+  float *pivot = pivot_of(w, p), inverse[SD_BLOCK];
   for (int d = 0; d < 6; d++) pivot[(SD_BLOCK_LANES + 1) * d] += w->node[p].lost;
-  if (!w->kernels->divide(pivot, f->inverse + SD_BLOCK * (long) k, m, column)) {
+  if (!w->kernels->divide(pivot, inverse, m, w->column)) {
     float sum = 0.0f;
     for (int e = 0; e < SD_BLOCK; e++) sum += pivot[e];
     return isfinite(sum) ? SD_ESINGULAR : SD_ENOTFINITE;
   }
+  sd_block_keep(inverse, f->inverse + SD_BLOCK_KEPT * (long) k);
+  for (int s = 0; s < m; s++) sd_block_keep(w->column + SD_BLOCK * (long) s, f->column + SD_BLOCK_KEPT * (begin + s));
   sd_status status = SD_OK;
   const int *row = f->row + begin;
   for (int s = 0; s < m && status == SD_OK; s++)
-    status = couple(w, p, row[s], m - 1 - s, row + s + 1, column + SD_BLOCK * (long) s, drop);
+    status = couple(w, p, row[s], m - 1 - s, row + s + 1, w->column + SD_BLOCK * (long) s, drop);
   for (int s = 0; s < m; s++) join_queue(w, row[s]);
   return status;
 }
@@ -385,7 +399,7 @@ void sd_block_cholesky_free(sd_block_cholesky *f)
   struct sd_elimination *w = f->work;
   if (w) {
     void *const arrays[] = {w->end,   w->block, w->free_block, w->node,
-                            w->pivot, w->queue, w->target,     w->target_block};
+                            w->pivot, w->queue, w->column,     w->target, w->target_block};
     for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) free(arrays[k]);
     free(w);
   }

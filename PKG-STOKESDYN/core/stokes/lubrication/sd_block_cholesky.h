@@ -30,8 +30,9 @@ typedef struct {
   int *order;
   long *first;
   int *row;
-  /* In the order of elimination, blocks of [6][SD_BLOCK_LANES]: inverses of the pivots' factors;
-   * the entries. The vector that they are applied to, [SD_BLOCK_LANES n] by nodes */
+  /* In the order of elimination, blocks of [6][6]: inverses of the pivots' factors; the entries. Behind the
+   * last ones stands at least one more row, since they are read in whole vectors. The vector that they are
+   * applied to, [SD_BLOCK_LANES n] by nodes */
   float *inverse, *column, *vector;
   /* what the elimination works with */
   struct sd_elimination *work;

@@ -1,12 +1,13 @@
 /* Between the elimination of sd_block_cholesky.c and its kernels, of which each instruction set has
- * its own build. Blocks are [6][SD_BLOCK_LANES], row by row, zeros behind each row. */
+ * its own build. Blocks that it works with are [6][SD_BLOCK_LANES], row by row, zeros behind each row; those
+ * of the factor, which are read again and again from memory, are without these. */
 #ifndef SD_BLOCK_INTERNAL_H
 #define SD_BLOCK_INTERNAL_H
 
 #include "sd_block_cholesky.h"
 #include "sd_isa.h"
 
-enum { SD_BLOCK = 6 * SD_BLOCK_LANES };
+enum { SD_BLOCK = 6 * SD_BLOCK_LANES, SD_BLOCK_KEPT = 36 };
 
 /* What a product of two blocks of a column goes to: `to` -= C_q C_r^T, the other way round if its
  * rows are those of r; or `to` is new */
@@ -29,6 +30,13 @@ struct sd_block_kernels {
   void (*forth)(const sd_block_cholesky *f, long begin, long end);
   void (*back)(const sd_block_cholesky *f, long begin, long end);
 };
+
+/* A block as the factor keeps it */
+static inline void sd_block_keep(const float *A, float *out)
+{
+  for (int r = 0; r < 6; r++)
+    for (int c = 0; c < 6; c++) out[6 * r + c] = A[SD_BLOCK_LANES * r + c];
+}
 
 SD_KERNEL_TABLES(struct sd_block_kernels, sd_block);
 

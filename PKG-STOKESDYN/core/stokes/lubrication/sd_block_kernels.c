@@ -2,7 +2,9 @@
  *
  * What is done to a block is done to whole rows of it, so that nothing has to be summed over lanes:
  * a row less rows of another block times numbers of a third. So the factor of a pivot is kept as
- * the upper U = G^T, and of column blocks the transposed ones, C_q^T. */
+ * the upper U = G^T, and of column blocks the transposed ones, C_q^T. Rows of blocks that the factor keeps
+ * stand one right behind the other, so that what is in the last lanes of a vector is the next row's: it gets
+ * into the last lanes of results, which nobody reads. */
 #include <math.h>
 
 #include "sd_block_internal.h"
@@ -20,10 +22,10 @@ INLINE floats less(floats v, int count, const float *s, int stride, const floats
   return v;
 }
 
-/* A part of the rows of a block: the vectors that begin at B */
-INLINE void load_rows(const float *B, floats b[6])
+/* A part of the rows of a block, one every `stride`: the vectors that begin at B */
+INLINE void load_rows(const float *B, int stride, floats b[6])
 {
-  for (int k = 0; k < 6; k++) b[k] = AT(B + ROW * k);
+  for (int k = 0; k < 6; k++) b[k] = AT(B + stride * k);
 }
 
 INLINE float six_of(const float *lanes)
@@ -87,7 +89,7 @@ INLINE void subtract_product(const float *A, const float *B, float *out)
 {
   for (int h = 0; h < ROW; h += FLOATS) {
     floats b[6];
-    load_rows(B + h, b);
+    load_rows(B + h, ROW, b);
     for (int p = 0; p < 6; p++)
       AT(out + ROW * p + h) = less(AT(out + ROW * p + h), 6, A + p, ROW, b);
   }
@@ -100,7 +102,7 @@ INLINE float set_product(const float *A, const float *B, float *out)
   for (int h = 0; h < ROW; h += FLOATS) {
     const floats none = {0.0f};
     floats b[6], squares = none;
-    load_rows(B + h, b);
+    load_rows(B + h, ROW, b);
     for (int p = 0; p < 6; p++) {
       const floats v = less(none, 6, A + p, ROW, b);
       squares += v * v;
@@ -125,14 +127,24 @@ static void block_subtract(const float *column, float *pivot, int count, sd_bloc
   }
 }
 
-/* --- to apply it --- */
+/* --- to apply it: blocks as the factor keeps them --- */
+
+/* Blocks that are wanted so many later are fetched: back is against the order in which a processor foresees
+ * what is wanted. */
+enum { KEPT_ROW = 6, AHEAD = 24 };
+
+INLINE void fetch_block(const float *first, long e)
+{
+  enum { LINE = 16 };
+  for (int k = 0; k < SD_BLOCK_KEPT && e >= 0; k += LINE) sd_fetch(first + SD_BLOCK_KEPT * e + k);
+}
 
 /* v -= A^T y, A by rows */
 INLINE void forward(const float *A, const float *y, float *v)
 {
   for (int h = 0; h < ROW; h += FLOATS) {
     floats a[6];
-    load_rows(A + h, a);
+    load_rows(A + h, KEPT_ROW, a);
     AT(v + h) = less(AT(v + h), 6, y, 1, a);
   }
 }
@@ -141,7 +153,7 @@ INLINE void forward(const float *A, const float *y, float *v)
 INLINE void backward(const float *A, const float *v, float *sums)
 {
   for (int k = 0; k < SD_BLOCK; k += FLOATS)
-    AT(sums + k) += AT(A + k) * AT(v + k % ROW);
+    AT(sums + k) += AT(A + KEPT_ROW * (k / ROW) + k % ROW) * AT(v + k % ROW);
 }
 
 static void block_forth(const sd_block_cholesky *f, long begin, long end)
@@ -150,10 +162,10 @@ static void block_forth(const sd_block_cholesky *f, long begin, long end)
   for (long k = begin; k < end; k++) {
     float *at = v + ROW * (long) f->order[k], y[ROW] = {0.0f};
     for (int c = 0; c < 6; c++) at[c] = -at[c];
-    forward(f->inverse + SD_BLOCK * k, at, y);
+    forward(f->inverse + SD_BLOCK_KEPT * k, at, y);
     for (int h = 0; h < ROW; h += FLOATS) AT(at + h) = AT(y + h);
     for (long e = f->first[k]; e < f->first[k + 1]; e++)
-      forward(f->column + SD_BLOCK * e, y, v + ROW * (long) f->row[e]);
+      forward(f->column + SD_BLOCK_KEPT * e, y, v + ROW * (long) f->row[e]);
   }
 }
 
@@ -162,10 +174,14 @@ static void block_back(const sd_block_cholesky *f, long begin, long end)
   float *v = f->vector;
   for (long k = end - 1; k >= begin; k--) {
     float *at = v + ROW * (long) f->order[k], sums[SD_BLOCK] = {0.0f}, x[SD_BLOCK] = {0.0f};
-    for (long e = f->first[k + 1] - 1; e >= f->first[k]; e--)
-      backward(f->column + SD_BLOCK * e, v + ROW * (long) f->row[e], sums);
+    fetch_block(f->inverse, k - AHEAD);
+    for (long e = f->first[k + 1] - 1; e >= f->first[k]; e--) {
+      fetch_block(f->column, e - AHEAD);
+      sd_fetch(v + ROW * (long) f->row[e < AHEAD ? 0 : e - AHEAD]);
+      backward(f->column + SD_BLOCK_KEPT * e, v + ROW * (long) f->row[e], sums);
+    }
     for (int c = 0; c < 6; c++) at[c] -= six_of(sums + ROW * c);
-    backward(f->inverse + SD_BLOCK * k, at, x);
+    backward(f->inverse + SD_BLOCK_KEPT * k, at, x);
     for (int c = 0; c < 6; c++) at[c] = six_of(x + ROW * c);
   }
 }

@@ -50,6 +50,17 @@ static sd_status identify(sd_lubrication *L, const sd_lubrication_scene *s)
   return s->world.refresh(s->world.ctx, &who->rank, &who[s->n].rank, sizeof(identity) / sizeof(double));
 }
 
+static sd_status keep_drift(sd_lubrication *L, const sd_lubrication_scene *s)
+{
+  struct sd_lubrication_work *w = L->work;
+  const size_t others = 3 * (size_t) (s->n_all - s->n);
+  w->drifts = s->drift != NULL;
+  if (!w->drifts) return SD_OK;
+  if (!sd_reserve(&w->drift, sizeof(double), others, &w->most_drifts)) return SD_ENOMEMORY;
+  if (others > 0) memcpy(w->drift, s->drift, sizeof(double) * others);
+  return SD_OK;
+}
+
 /* Once the pairs are known */
 static sd_status reserve_noise(sd_lubrication *L, const sd_lubrication_scene *s)
 {
@@ -84,6 +95,19 @@ static double film_range_of(const sd_lubrication_scene *s, double ai, double aj)
   return s->points ? s->range * 4.0 * ai * aj / (sum * sum) : s->range;
 }
 
+/* The gap of a pair over its mean radius, and t of it */
+static double gap_of_film(const sd_lubrication_scene *s, int i, const closeness *c)
+{
+  return 2.0 * (c->distance / (s->spheres.a[i] + s->spheres.a[c->at]) - 1.0);
+}
+
+static double weight_of_film(const sd_lubrication_scene *s, int i, const closeness *c)
+{
+  const double range = film_range_of(s, s->spheres.a[i], s->spheres.a[c->at]);
+  const double q = fmin(fmax(2.0 * gap_of_film(s, i, c) / range - 1.0, 0.0), 1.0);
+  return 1.0 - q * q * (3.0 - 2.0 * q);
+}
+
 /* What there is to know of a pair where it stands; d from sphere i to j */
 static closeness film_look(const sd_lubrication_scene *s, int i, int j, double d[3])
 {
@@ -94,13 +118,7 @@ static closeness film_look(const sd_lubrication_scene *s, int i, int j, double d
     for (int e = 0; e < 3; e++) d[e] /= R;
   else
     d[2] = 1.0; /* spheres at one point: any direction */
-  const double xi = 2.0 * (R / (p->a[i] + p->a[j]) - 1.0);
-  const double range = film_range_of(s, p->a[i], p->a[j]);
-  const double q = fmin(fmax(2.0 * xi / range - 1.0, 0.0), 1.0);
-  closeness close = {xi, 1.0 - q * q * (3.0 - 2.0 * q), R, {0.0, 0.0, 0.0}, j};
-  if (s->drift && j >= s->n)
-    memcpy(close.drift, s->drift + 3 * (long) (j - s->n), sizeof close.drift);
-  return close;
+  return (closeness){R, j};
 }
 
 /* The pair of i and `at`, and of j that stands there, if they feel each other */
@@ -109,7 +127,7 @@ static void keep_pair(sd_lubrication *L, const sd_lubrication_scene *s, long *co
 {
   if (one_body(L, i, at)) return;
   const closeness close = film_look(s, i, at, L->link[*count].d);
-  if (!(close.t > 0.0)) return;
+  if (!(weight_of_film(s, i, &close) > 0.0)) return;
   L->pair[*count][0] = i;
   L->pair[*count][1] = j;
   L->work->close[(*count)++] = close;
@@ -152,8 +170,9 @@ static sd_status count_neighbours(sd_lubrication *L, const sd_lubrication_scene 
   memset(n, 0, sizeof(double) * (size_t) s->n_all);
   for (long k = 0; k < L->count; k++) {
     const int i = L->pair[k][0], j = L->pair[k][1];
-    n[i] += L->work->close[k].t;
-    if (j != i && j < L->n) n[j] += L->work->close[k].t;
+    const double t = weight_of_film(s, i, L->work->close + k);
+    n[i] += t;
+    if (j != i && j < L->n) n[j] += t;
   }
   return s->world.refresh ? s->world.refresh(s->world.ctx, n, n + s->n, 1) : SD_OK;
 }
@@ -229,7 +248,7 @@ static void add_carried(sd_lubrication *L, const sd_lubrication_scene *s, long k
              (const double[]){p->a[i], p->a[at]}, u, c.V);
   for (int q = 0; q < 12; q++) c.e[q / 6][q % 6] = c.V[q / 6][q % 6] - u[q / 6][q % 6];
   /* L V is of velocities without the drift: what that makes of V_inf is left */
-  for (int q = 0; s->drift && at >= s->n && q < 3; q++) c.V[1][q] -= s->drift[3 * (at - s->n) + q];
+  for (int q = 0; q < 3; q++) c.V[1][q] -= drift_at(L, at)[q];
   film_carry(L, i, 0, block_of(R, 0, d), B12, &c);
   if (j < L->n && j != i) film_carry(L, j, 1, block_of(R, 2, d), exchanged(B12), &c);
 }
@@ -258,11 +277,12 @@ static sd_status resistance_of(const sd_lubrication *L, const sd_lubrication_sce
   const closeness *c = L->work->close + k;
   const int i = L->pair[k][0];
   const double *n = L->work->neighbours, ai = s->spheres.a[i], aj = s->spheres.a[c->at];
-  const double scale = c->t * eta, xi = fmax(c->xi, s->gap), apart = fmax(c->xi, 0.0);
+  const double gap = gap_of_film(s, i, c), t = weight_of_film(s, i, c);
+  const double scale = t * eta, xi = fmax(gap, s->gap), apart = fmax(gap, 0.0);
   const double q = fmin(apart / film_range_of(s, ai, aj), 1.0), fading = 1.0 - q * q * (3.0 - 2.0 * q);
   if (!s->films) {
     *model = fading * sd_rpy_approach((1.0 + 0.5 * apart) * (ai + aj), ai, aj, eta);
-    const double share = shared(2.0 * c->t / (n[i] + n[c->at]));
+    const double share = shared(2.0 * t / (n[i] + n[c->at]));
     return sd_two_sphere_correction(s->functions, ai, aj, xi, scale * share, scale * (1.0 - share),
                                     R);
   }
@@ -280,7 +300,7 @@ static sd_status resistance_of(const sd_lubrication *L, const sd_lubrication_sce
 static void film_drift(sd_lubrication *L, long k, const sd_pair_resistance *R)
 {
   const int i = L->pair[k][0], j = L->pair[k][1];
-  const double *d = L->link[k].d, *drift = L->work->close[k].drift;
+  const double *d = L->link[k].d, *drift = drift_at(L, L->work->close[k].at);
   const sd_lubrication_link B12 = block_of(R, 1, d), B22 = block_of(R, 2, d);
   const double V[6] = {-drift[0], -drift[1], -drift[2], 0.0, 0.0, 0.0};
   add_product(&B12, V, L->carried + 6 * (long) i);
@@ -330,6 +350,7 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
   if (!L->work) L->work = calloc(1, sizeof(*L->work));
   if (!L->work) return SD_ENOMEMORY;
   sd_status status = reserve_spheres(L, scene);
+  if (status == SD_OK) status = keep_drift(L, scene);
   if (status == SD_OK) status = identify(L, scene);
   if (status == SD_OK) status = find_pairs(L, scene);
   if (status == SD_OK) status = reserve_noise(L, scene);
@@ -380,6 +401,7 @@ void sd_lubrication_free(sd_lubrication *L)
     free(L->work->neighbours);
     free(L->work->flow);
     free(L->work->close);
+    free(L->work->drift);
     free(L->work->image);
     free(L->work->whole);
     free(L->work->alone);

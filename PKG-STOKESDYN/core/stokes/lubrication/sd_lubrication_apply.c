@@ -14,21 +14,7 @@ sd_status sd_lubrication_apply_both(const sd_lubrication *L, const double *diago
 {
   const sd_status status = fetch(L, V);
   if (status != SD_OK) return status;
-  for (long i = 0; i < L->n; i++)
-    for (int p = 0; p < 6; p++) {
-      double sum = 0.0;
-      for (int q = 0; q < 6; q++) sum += diagonal[36 * i + 6 * p + q] * V[6 * i + q];
-      out[6 * i + p] = sum;
-    }
-  for (long k = 0; k < L->count; k++) {
-    const int i = L->pair[k][0], j = L->pair[k][1];
-    sd_lubrication_link B12 = L->link[k];
-    if (c) B12.XA -= c[k];
-    add_product(&B12, motion_at(L, V, j), out + 6 * (long) i);
-    if (j >= L->n) continue;
-    const sd_lubrication_link B21 = exchanged(B12);
-    add_product(&B21, V + 6 * (long) i, out + 6 * (long) j);
-  }
+  SD_KERNELS_OF(sd_lubrication, plain, sd_isa_of(SD_ISA_BEST))->times(L, diagonal, c, V, out);
   return SD_OK;
 }
 
@@ -74,10 +60,11 @@ static void add_moment(const sd_lubrication *L, long k, const sd_lubrication_lin
 {
   static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
   const int i = L->pair[k][0], j = L->pair[k][1];
-  const double *d = film->d, half = 0.5 * L->work->close[k].distance;
+  const closeness *close = L->work->close + k;
+  const double *d = film->d, half = 0.5 * close->distance, *drift = drift_at(L, close->at);
   double U[3], spin[3], turned[3], F[3];
   for (int e = 0; e < 3; e++) {
-    U[e] = Vj[e] + L->work->close[k].drift[e] - Vi[e];
+    U[e] = Vj[e] + drift[e] - Vi[e];
     spin[e] = film->YB21 * Vj[3 + e] - film->YB12 * Vi[3 + e];
   }
   const double along = sd_dot(d, U);

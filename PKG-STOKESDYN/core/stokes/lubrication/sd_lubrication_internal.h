@@ -2,13 +2,13 @@
 #ifndef SD_LUBRICATION_INTERNAL_H
 #define SD_LUBRICATION_INTERNAL_H
 
+#include "sd_isa.h"
 #include "sd_linear.h"
 #include "sd_lubrication.h"
 
-/* How near a pair is: gap over the mean radius, t of it, distance of the centres; and where its
- * second sphere stands: itself, or its image, which drifts */
+/* How far the centres of a pair are apart; and where its second sphere stands: itself, or its image */
 typedef struct {
-  double xi, t, distance, drift[3];
+  double distance;
   int at;
 } closeness;
 
@@ -37,6 +37,10 @@ struct sd_lubrication_work {
   /* [n_all] whose each is; n_i; u [6] */
   identity *identity;
   double *neighbours, *flow;
+  /* [3 (n_all - n)] where images drift */
+  double *drift;
+  int drifts;
+  size_t most_drifts;
   /* some u is not 0 */
   int flows;
   /* [count] */
@@ -52,6 +56,14 @@ struct sd_lubrication_work {
   size_t image_room;
   long most_spheres, most_pairs;
 };
+
+struct sd_lubrication_kernels {
+  /* as sd_lubrication_apply_both, where the others' velocities are known */
+  void (*times)(const sd_lubrication *L, const double *diagonal, const double *c, const double *V,
+                double *out);
+};
+
+SD_KERNEL_TABLES(struct sd_lubrication_kernels, sd_lubrication);
 
 /* out += B V for a block of a pair */
 static inline void add_product(const sd_lubrication_link *B, const double *V, double *out)
@@ -87,6 +99,13 @@ static inline sd_lubrication_link block_of(const sd_pair_resistance *R, int b, c
 static inline const double *motion_at(const sd_lubrication *L, const double *V, int j)
 {
   return j < L->n ? V + 6 * (long) j : L->others + 6 * (long) (j - L->n);
+}
+
+/* How what stands there drifts */
+static inline const double *drift_at(const sd_lubrication *L, int at)
+{
+  static const double still[3] = {0.0};
+  return L->work->drifts && at >= L->n ? L->work->drift + 3 * (long) (at - L->n) : still;
 }
 
 /* The others' V, which no rank needs that is alone */

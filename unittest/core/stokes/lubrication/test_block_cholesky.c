@@ -237,10 +237,11 @@ static worked work_with(const struct sd_block_kernels *kernels)
   w.square = target[0].square;
   int order[5] = {2, 0, 1, 3, 4}, row[4] = {3, 1, 4, 0};
   long first[6] = {0, 4, 4, 4, 4, 4};
-  float inverse[5 * SD_BLOCK];
-  for (int k = 0; k < 5; k++) memcpy(inverse + SD_BLOCK * k, w.inverse, sizeof(w.inverse));
+  float inverse[6 * SD_BLOCK_KEPT] = {0.0f}, column[5 * SD_BLOCK_KEPT] = {0.0f}; /* and room behind */
+  for (int k = 0; k < 5; k++) sd_block_keep(w.inverse, inverse + SD_BLOCK_KEPT * k);
+  for (int k = 0; k < 4; k++) sd_block_keep(w.column + SD_BLOCK * k, column + SD_BLOCK_KEPT * k);
   const sd_block_cholesky f = {
-      .n = 5, .order = order, .first = first, .row = row, .inverse = inverse, .column = w.column, .vector = w.vector};
+      .n = 5, .order = order, .first = first, .row = row, .inverse = inverse, .column = column, .vector = w.vector};
   kernels->forth(&f, 0, 5);
   kernels->back(&f, 0, 5);
   return w;

@@ -5,6 +5,7 @@
 
 #include "sd_constants.h"
 #include "sd_linear.h"
+#include "sd_lubrication_internal.h"
 #include "sd_two_sphere_exact.h"
 
 /* 1.3: viscosity, so that no factor is 1 */
@@ -357,6 +358,46 @@ static void images_count_as_spheres(void **state)
   }
 }
 
+/* out += B V */
+static void add_times(const double B[36], const double *V, double *out)
+{
+  for (int e = 0; e < 36; e++) out[e / 6] += B[e] * V[e % 6];
+}
+
+/* The sums of L V with springs c, written out with blocks, against those of each instruction set */
+static void all_instructions_make_the_same_product(void **state)
+{
+  (void) state;
+  enum { N = 40, WIDTH = 6 * N };
+  near_scene q = near_create(cloud_dense(N, 0.4, 1.0, 1.0, eta, 3), 1.0, 1e-3);
+  near_place(&q);
+  const sd_lubrication *L = &q.L;
+  double V[WIDTH], expected[WIDTH] = {0.0}, out[WIDTH], largest = 0.0;
+  double *c = malloc(sizeof(double) * (size_t) L->count);
+  uint64_t seed = 7;
+  for (int j = 0; j < WIDTH; j++) V[j] = uniform(&seed, -1, 1);
+  for (int i = 0; i < N; i++) add_times(L->diagonal + 36 * i, V + 6 * i, expected + 6 * i);
+  for (long k = 0; k < L->count; k++) {
+    double B[36] = {0.0}, turned[36];
+    sd_lubrication_link link = L->link[k];
+    c[k] = uniform(&seed, 0, 1);
+    link.XA -= c[k];
+    sd_lubrication_add_block(&link, B);
+    for (int e = 0; e < 36; e++) turned[e] = B[6 * (e % 6) + e / 6];
+    add_times(B, V + 6 * L->pair[k][1], expected + 6 * L->pair[k][0]);
+    add_times(turned, V + 6 * L->pair[k][0], expected + 6 * L->pair[k][1]);
+  }
+  for (int j = 0; j < WIDTH; j++) largest = fmax(largest, fabs(expected[j]));
+  assert_true(L->count > N);
+  for (sd_isa isa = SD_ISA_PLAIN; isa <= SD_ISA_AVX512; isa++) {
+    if (!sd_isa_supported(isa)) continue;
+    SD_KERNELS_OF(sd_lubrication, plain, isa)->times(L, L->diagonal, c, V, out);
+    for (int j = 0; j < WIDTH; j++) CHECK_NEAR(out[j], expected[j], 1e-14 * largest);
+  }
+  free(c);
+  near_free(&q);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -370,6 +411,7 @@ int main(void)
       cmocka_unit_test(films_in_a_strain_lose_power),
       cmocka_unit_test(the_fastest_rate_is_that_of_the_film),
       cmocka_unit_test(images_count_as_spheres),
+      cmocka_unit_test(all_instructions_make_the_same_product),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
