@@ -28,7 +28,7 @@ void BodyScene::place_points()
   const size_t n = scene.size(), points = scene.shells->first_of_rows()[n];
   const double *gradients = ambient.gradients(), *curvatures = ambient.curvatures();
   const size_t bends = curvatures ? SD_FLOW_SECOND : 0;
-  std::vector<double> x(3 * points + 3), b(points + 1);
+  std::vector<double> b(points + 1);
   std::vector<double> rows = scene.rows(BEND + (int) bends, [&](int i, double *out) {
     std::copy_n(ambient.velocity(i), 3, out + VELOCITY);
     if (gradients) std::copy_n(gradients + 9 * (size_t) i, 9, out + SLOPE);
@@ -42,7 +42,7 @@ void BodyScene::place_points()
   of_points.w = spheres.w;
   r.resize(3 * points + 3);
   of_points.r = r.data();
-  sd_multiblob_expand(of_points.model, &of_points.spheres, r.data(), x.data(), b.data());
+  sd_multiblob_expand(of_points.model, &of_points.spheres, r.data(), nullptr, b.data());
   sphere.resize(points);
   for (size_t k = 0; k < n; k++)
     std::fill_n(sphere.begin() + of_points.spheres.first[k], scene.shells->points_of_row(k), (int) k);

@@ -69,8 +69,10 @@ void Lubrication::place(Scene &where, const Ambient *fluid, bool noisy)
   const bool halves = where.shells && where.shells->halves();
   surround(where);
   if (where.largest() > 0.0) provide(where.largest(), where.smallest(), halves);
-  u.assign(6 * (size_t) where.size() + 6, 0.0);
-  if (fluid) {
+  const Boundary &boundary = where.settings.boundary;
+  const bool asks_flow = !shells.on() || boundary.walls > 0;
+  if (asks_flow) u.assign(6 * (size_t) where.size() + 6, 0.0);
+  if (asks_flow && fluid) {
     u = where.rows(6, [&](int i, double *out) { fluid->fluid(i, out); });
     where.drift(u.data(), 6, 1.0);
   }
@@ -86,12 +88,11 @@ void Lubrication::place(Scene &where, const Ambient *fluid, bool noisy)
   scene.n_all = (int) a.size();
   scene.spheres = {x.data(), a.data(), w.data()};
   scene.body = where.all_molecules().data();
-  scene.u = u.data();
+  scene.u = shells.on() ? nullptr : u.data();
   scene.drift = !fluid || drift.empty() ? nullptr : drift.data();
   scene.noisy = noisy;
   scene.world = halo.ranks();
   check(sd_lubrication_place(&near, &scene));
-  const Boundary &boundary = where.settings.boundary;
   for (int k = 0; k < boundary.walls; k++) add_wall(where, boundary.wall[k]);
 }
 

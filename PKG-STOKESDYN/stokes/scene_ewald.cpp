@@ -50,8 +50,7 @@ sd_ewald_sizes Scene::sizes_of_all(double largest) const
 {
   sd_ewald_sizes s = {};
   s.all.largest = largest;
-  for (int k = 0; k < size(); k++)
-    for (int p = 0; p < points(a[k]); p++) sd_ewald_count(&s, grain(a[k]));
+  for (int k = 0; k < size(); k++) sd_ewald_count(&s, grain(a[k]), points(a[k]));
   static_assert(sizeof(s) == (1 + SD_EWALD_OCTAVES) * 4 * sizeof(double), "numbers alone");
   const int numbers = sizeof(s) / sizeof(double);
   sd_ewald_sizes most = s;

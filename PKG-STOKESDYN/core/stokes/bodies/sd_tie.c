@@ -9,6 +9,7 @@
 #include "sd_tie_approach.h"
 #include "sd_tie_factor.h"
 
+/* Vectors of bodies: together as long as the blocks of these, which the factor is made of in their room */
 enum { MOST_PRODUCTS = 1000, VECTORS = 6 };
 
 sd_status sd_tie_make(const sd_bodies *A)

@@ -20,7 +20,8 @@ static const double weak = 0.8, drop = 0.1;
 static const double stiff = 12.0;
 
 typedef struct {
-  /* [36 bodies] blocks of H_ii, scaled; [bodies and others] the square of the norm of its largest H_ij */
+  /* [36 bodies] blocks of H_ii, scaled, in the room of vectors that wait for a factor; [bodies and others]
+   * the square of the norm of its largest H_ij */
   double *diagonal, *largest;
   /* of the spheres of this rank and of the copies [SD_PLACE]; of copies the body that each belongs to, among
    * those of the factor, -1: none; does it stand for its sphere, which may have more copies? */
@@ -256,14 +257,15 @@ static sd_status factor_reserve(const sd_bodies *A, assembly *a)
   const size_t bodies = (size_t) sd_bodies_count(A), number = sizeof(double);
   a->copies = layered(A) ? t->L->n_all - t->L->n : 0;
   const size_t all = bodies + (size_t) a->copies, copies = (size_t) a->copies;
-  a->diagonal = calloc(36 * bodies + 1, number);
+  a->diagonal = t->vectors;
+  memset(a->diagonal, 0, 36 * bodies * number);
   a->largest = calloc(all + 1, number);
   a->mine = malloc(number * (SD_PLACE * (size_t) A->spheres.n + 1));
   a->place = malloc(number * (SD_PLACE * copies + 1));
   a->body = malloc(sizeof(int) * (copies + 1));
   a->stands = malloc(copies + 1);
   t->others = t->severed = 0;
-  const int there = a->diagonal && a->largest && a->mine && a->place && a->body && a->stands &&
+  const int there = a->largest && a->mine && a->place && a->body && a->stands &&
       sd_reserve(&t->scale, number, 6 * all, &t->most_scales) &&
       sd_reserve(&t->weight, number, bodies, &t->most_weights) &&
       sd_reserve(&t->all, number, 6 * all, &t->most_all) &&
@@ -315,7 +317,6 @@ sd_status sd_tie_factor(const sd_bodies *A)
   if (status == SD_OK) status = sd_block_cholesky_finish(&A->tie->factor, drop);
   status = sd_world_agree(world, status);
   if (status == SD_OK && layered(A)) status = weigh(A, &a);
-  free(a.diagonal);
   free(a.largest);
   free(a.mine);
   free(a.place);

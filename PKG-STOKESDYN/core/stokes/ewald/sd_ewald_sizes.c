@@ -18,10 +18,10 @@ static int octave_of(double largest, double a)
   return k;
 }
 
-void sd_ewald_count(sd_ewald_sizes *s, double a)
+void sd_ewald_count(sd_ewald_sizes *s, double a, int alike)
 {
   const double a2 = a * a;
-  const sd_ewald_class one = {1.0, a2, a2 * a2, a};
-  sd_ewald_add_class(&s->all, &one);
-  sd_ewald_add_class(s->octave + octave_of(s->all.largest, a), &one);
+  const sd_ewald_class some = {alike, alike * a2, alike * a2 * a2, a};
+  sd_ewald_add_class(&s->all, &some);
+  sd_ewald_add_class(s->octave + octave_of(s->all.largest, a), &some);
 }

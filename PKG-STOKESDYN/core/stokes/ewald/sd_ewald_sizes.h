@@ -22,8 +22,8 @@ typedef struct {
   sd_ewald_class all, octave[SD_EWALD_OCTAVES];
 } sd_ewald_sizes;
 
-/* One more sphere; all.largest is known already. */
-void sd_ewald_count(sd_ewald_sizes *s, double a);
+/* So many more spheres; all.largest is known already. */
+void sd_ewald_count(sd_ewald_sizes *s, double a, int alike);
 void sd_ewald_add_class(sd_ewald_class *sum, const sd_ewald_class *s);
 
 SD_END_C

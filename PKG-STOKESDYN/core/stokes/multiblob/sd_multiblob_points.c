@@ -69,7 +69,7 @@ void sd_multiblob_expand(const sd_multiblob *models, const sd_multiblob_spheres 
         memcpy(arm, m->r + 3 * k, sizeof arm);
       for (int d = 0; d < 3; d++) {
         arm[d] *= a;
-        x[3 * row + d] = s->x[3 * (long) i + d] + arm[d];
+        if (x) x[3 * row + d] = s->x[3 * (long) i + d] + arm[d];
         if (r) r[3 * row + d] = arm[d];
       }
       b[row] = !s->mask || sd_multiblob_has_point(s->mask + i, k) ? a * m->point : 0.0;

@@ -69,8 +69,8 @@ static inline int sd_multiblob_is_whole(const sd_multiblob_spheres *s, long i)
   return s->a[i] > 0.0 && (!s->mask || sd_multiblob_mask_is_whole(s->mask + i));
 }
 
-/* Points of all of them: r [3 rows] from the centre of their sphere (NULL: not wanted), x where
- * they are, b [rows] radii */
+/* Points of all of them: r [3 rows] from the centre of their sphere, x where they are (r, x NULL: not
+ * wanted), b [rows] radii */
 void sd_multiblob_expand(const sd_multiblob *m, const sd_multiblob_spheres *s, double *r, double *x,
                          double *b);
 

@@ -32,7 +32,7 @@ static inline sd_ewald_sizes periodic_sizes(const double *a, int n)
   sd_ewald_sizes s = {0};
   for (int i = 0; i < n; i++) s.all.largest = fmax(s.all.largest, a[i]);
   for (int i = 0; i < n; i++)
-    if (a[i] > 0.0) sd_ewald_count(&s, a[i]);
+    if (a[i] > 0.0) sd_ewald_count(&s, a[i], 1);
   return s;
 }
 

@@ -45,7 +45,7 @@ static inline sd_status slab_choose(const sd_slab_walls *walls, const sd_ewald_b
     if (!(a[i] > 0.0)) continue;
     double at[3];
     sd_slab_keep_off(walls, x + 3 * i, a[i], at);
-    sd_ewald_count(&sizes, a[i]);
+    sd_ewald_count(&sizes, a[i], 1);
     smallest = fmin(smallest, a[i]);
     lo = fmin(lo, sd_slab_height(walls, at));
     hi = fmax(hi, sd_slab_height(walls, at));

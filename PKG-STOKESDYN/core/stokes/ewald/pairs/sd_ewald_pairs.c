@@ -7,6 +7,7 @@
 #include "sd_constants.h"
 #include "sd_ewald_groups.h"
 #include "sd_ewald_rows.h"
+#include "sd_isa.h"
 #include "sd_room.h"
 
 void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
@@ -79,15 +80,18 @@ static sd_status sort_spheres(sd_ewald_pairs *p, int n, int n_all)
 
 static void pairs_fill_rows(sd_ewald_pairs *p)
 {
+  enum { AHEAD = 12 };
   double largest = 0.0, *centre = sd_ewald_centres(p);
-  for (int k = 0; k < p->rows; k++) largest = fmax(largest, p->spheres.a[p->sphere[k]]);
-  p->scale = largest > 0.0 ? ldexp(1.0, -ilogb(largest)) : 1.0;
   p->equal = 1;
   for (int k = 0; k < p->rows; k++) {
-    const long i = p->sphere[k];
+    const long i = p->sphere[k], later = p->sphere[k + AHEAD < p->rows ? k + AHEAD : k];
+    sd_fetch(p->spheres.x + 3 * later);
+    sd_fetch(p->spheres.a + later);
     for (int d = 0; d < 3; d++) centre[(long) d * p->rows + k] = p->spheres.x[3 * i + d];
+    largest = fmax(largest, p->spheres.a[i]);
     p->equal = p->equal && p->spheres.a[i] == p->ewald.a_ref;
   }
+  p->scale = largest > 0.0 ? ldexp(1.0, -ilogb(largest)) : 1.0;
   p->numbers->stand(p);
 }
 

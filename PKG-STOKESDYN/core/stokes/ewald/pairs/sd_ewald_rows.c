@@ -13,27 +13,38 @@
 
 /* --- places --- */
 
-static void put_place(const sd_ewald_pairs *p, real *row, const double *x)
+/* Rows are in order of cells, and spheres anywhere in memory: what one has there is fetched so many rows before
+ * it is wanted. */
+enum { AHEAD = 12 };
+
+/* unit: of lengths, as many to 1 */
+static inline void put_place(double unit, real *row, const double *x)
 {
 #ifdef SD_SINGLE
   for (int d = 0; d < 3; d++) {
-    const double steps = x[d] * sd_ewald_pairs_steps(p), turn = 0x1p32;
+    const double steps = x[d] * unit, turn = 0x1p32;
     const uint32_t whole = (uint32_t) sd_whole_below(steps - turn * (double) sd_whole_below(steps / turn) + 0.5);
     memcpy(row + d, &whole, sizeof(whole));
   }
 #else
-  for (int d = 0; d < 3; d++) row[d] = x[d] * p->scale;
+  for (int d = 0; d < 3; d++) row[d] = x[d] * unit;
 #endif
 }
 
 static void rows_stand(sd_ewald_pairs *p)
 {
   real *row = p->row, *turn = p->torque_row;
+  const sd_spheres s = p->spheres;
+  const double scale = p->scale, unit = sizeof(real) == sizeof(float) ? sd_ewald_pairs_steps(p) : scale;
   for (long k = 0; k < p->rows; k++) {
-    const long i = p->sphere[k];
-    put_place(p, row + 8 * k, p->spheres.x + 3 * i);
-    row[8 * k + 3] = (real) (p->spheres.a[i] * p->scale);
-    row[8 * k + 7] = (real) p->spheres.w[i];
+    const long i = p->sphere[k], later = p->sphere[k + AHEAD < p->rows ? k + AHEAD : k];
+    sd_fetch(s.x + 3 * later);
+    sd_fetch(s.x + 3 * later + 2);
+    sd_fetch(s.a + later);
+    sd_fetch(s.w + later);
+    put_place(unit, row + 8 * k, s.x + 3 * i);
+    row[8 * k + 3] = (real) (s.a[i] * scale);
+    row[8 * k + 7] = (real) s.w[i];
   }
   for (long d = 0; d < 8 * SD_EMPTY_ROWS; d++) row[8L * p->rows + d] = (real) (d % 8 < 3 ? SD_NOWHERE : 0.0);
   for (long d = 0; d < 4 * SD_EMPTY_ROWS && turn; d++) turn[4L * p->rows + d] = 0;
@@ -41,19 +52,10 @@ static void rows_stand(sd_ewald_pairs *p)
 
 /* --- forces --- */
 
-/* Rows are in order of cells, and spheres anywhere in memory: what one has there is fetched so many rows before
- * it is wanted. */
-enum { AHEAD = 12 };
-
 static inline void fetch_ahead(int m, const double *numbers)
 {
-#ifdef SD_HAS_VECTORS
-  __builtin_prefetch(numbers);
-  __builtin_prefetch(numbers + m - 1);
-#else
-  (void) m;
-  (void) numbers;
-#endif
+  sd_fetch(numbers);
+  sd_fetch(numbers + m - 1);
 }
 
 static inline const double *force_on(int m, const sd_ewald_pairs *p, long row, int n, const double *F,

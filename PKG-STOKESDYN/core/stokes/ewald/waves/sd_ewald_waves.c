@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "sd_constants.h"
+#include "sd_isa.h"
 #include "sd_real.h"
 #include "sd_room.h"
 #include "sd_whole.h"
@@ -165,13 +166,16 @@ static int wv_inside(const sd_ewald_box *b, double x, int d)
 /* In a periodic box all stand within half a period of the first. */
 static int find_places(sd_ewald_waves *w, const sd_spheres *spheres, int *brick)
 {
+  enum { AHEAD = 12 }; /* spheres stand anywhere in memory */
   const sd_ewald_box *box = &w->ewald.box;
   const int points = w->ewald.points;
   double near[3] = {0.0};
   int hi[3] = {0}, *lo = brick, sound = 1;
   for (int i = 0; i < w->n && sound; i++) {
-    const int j = w->sphere[i];
+    const int j = w->sphere[i], later = w->sphere[i + AHEAD < w->n ? i + AHEAD : i];
     sd_spread_place *p = w->place + i;
+    sd_fetch(spheres->x + 3 * (long) later);
+    sd_fetch(spheres->a + later);
     double s[3];
     double x[3] = {spheres->x[3 * (long) j], spheres->x[3 * (long) j + 1],
                    spheres->x[3 * (long) j + 2]};
