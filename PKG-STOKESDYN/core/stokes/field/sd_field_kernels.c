@@ -90,15 +90,6 @@ INLINE unsigned lowest(uint64_t bits)
 /* A source is fetched so many before it is its turn. */
 enum { AHEAD = 6 };
 
-INLINE void soon(const double *p)
-{
-#if LANES > 1
-  __builtin_prefetch(p);
-#else
-  (void) p;
-#endif
-}
-
 INLINE vec within(vec a, vec most, vec x)
 {
   return where(a <= most, x, all(0.0));
@@ -179,7 +170,7 @@ static void windows(const sd_field_place *place, int n, int points, const double
   for (int l = 0; l < n; l++) {
     const double *at = from + columns * (long) place[l].at, *value = place[l].value;
     double *to = out + apart * l;
-    soon(at + next);
+    sd_fetch(at + next);
 #if LANES >= 4
     row4 sum = value[0] * load4(at);
     for (int k = 1; k < points; k++) sum += value[k] * load4(at + columns * k);

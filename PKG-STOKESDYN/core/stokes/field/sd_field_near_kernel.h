@@ -101,7 +101,7 @@ INLINE void OF(near_with)(int turns, int degree, const sd_field_part *p, sd_fiel
     const double *s = p->source + (long) SD_FIELD_ROW * b->source[m];
     if (m + AHEAD < b->n)
       for (int k = 0; k < SD_FIELD_ROW; k += 8)
-        soon(p->source + (long) SD_FIELD_ROW * b->source[m + AHEAD] + k);
+        sd_fetch(p->source + (long) SD_FIELD_ROW * b->source[m + AHEAD] + k);
     if (m == 0 || s[3] != a) OF(polynomials)(p, s[3], degree, c);
     a = s[3];
     OF(add_to_bricks)(turns, degree, p, s, b->lo, c, (const REAL(*)[SD_FIELD_BRICKS][8]) place,

@@ -82,16 +82,11 @@ static void find_cells(const sd_flow_grid *grid, const strides *s, int count, co
  * for while others are worked on. */
 INLINE void prefetch(const double *v, const strides *s)
 {
-#ifdef __GNUC__
   for (int row = 0; row < 4; row++) {
     const double *at = v + (row & 1) * s->next[1] + (row >> 1) * s->next[2];
-    __builtin_prefetch(at);
-    __builtin_prefetch(at + s->next[0]);
+    sd_fetch(at);
+    sd_fetch(at + s->next[0]);
   }
-#else
-  (void) v;
-  (void) s;
-#endif
 }
 
 /* value[p] = the trilinear mean of the eight corners: of the four edges along x, weighted by y and

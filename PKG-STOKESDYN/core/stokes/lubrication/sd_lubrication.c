@@ -361,7 +361,7 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
   const long pairs = L->count + L->beyond;
   for (long k = 0; k < pairs && status == SD_OK; k++) {
     /* the second sphere of a pair may be anywhere in memory */
-    __builtin_prefetch(L->diagonal + 36 * (long) L->pair[k + 6 < pairs ? k + 6 : k][1], 1);
+    sd_fetch(L->diagonal + 36 * (long) L->pair[k + 6 < pairs ? k + 6 : k][1]);
     status = add_pair(L, scene, k);
   }
   return status;

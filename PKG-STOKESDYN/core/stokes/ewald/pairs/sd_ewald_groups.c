@@ -292,12 +292,8 @@ sd_status sd_ewald_groups_find(sd_ewald_pairs *p, const sd_groups *groups, int n
 /* Groups are in order of cells, and their points anywhere in memory. */
 static void fetch_forces(const double *F)
 {
-#ifdef SD_HAS_VECTORS
   enum { LINE = 8 };
-  for (int d = 0; d < COLUMNS; d += LINE) __builtin_prefetch(F + d);
-#else
-  (void) F;
-#endif
+  for (int d = 0; d < COLUMNS; d += LINE) sd_fetch(F + d);
 }
 
 void sd_ewald_groups_apply(const sd_ewald_pairs *p, int begin, int end, const double *F, double *u)

@@ -16,8 +16,8 @@ INLINE yes_no load_group(const real *rows, int points, vec at[8])
 /* Groups may be anywhere in memory: the rows of one are fetched while those before it are at work. */
 INLINE void fetch_group(const real *rows, const real *sums, long row)
 {
-  for (int k = 0; k < 8 * SD_GROUP_POINTS; k += LANES) __builtin_prefetch(rows + 8 * row + k);
-  for (int k = 0; k < 4 * SD_GROUP_POINTS; k += LANES) __builtin_prefetch(sums + 4 * row + k, 1);
+  for (int k = 0; k < 8 * SD_GROUP_POINTS; k += LANES) sd_fetch(rows + 8 * row + k);
+  for (int k = 0; k < 4 * SD_GROUP_POINTS; k += LANES) sd_fetch(sums + 4 * row + k);
 }
 
 /* The group itself: what its other points do to each */

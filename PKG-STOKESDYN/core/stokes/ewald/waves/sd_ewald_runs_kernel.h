@@ -83,9 +83,9 @@ INLINE void fetch_plane(int rows, const spreading *s, const real *corner)
 {
   for (int q = 0; q < rows; q++) {
     const real *row = corner + q * s->row;
-    __builtin_prefetch(row);
-    __builtin_prefetch(row + LANES);
-    __builtin_prefetch(row + RUN_LANES - 1);
+    sd_fetch(row);
+    sd_fetch(row + LANES);
+    sd_fetch(row + RUN_LANES - 1);
   }
 }
 
@@ -180,7 +180,7 @@ typedef void of_points(const sd_spreading *s);
 static void fetch_places(const sd_spread_place *place)
 {
   const char *from = (const char *) place;
-  for (size_t at = 0; at < sizeof(*place) * SD_GROUP_POINTS; at += 64) __builtin_prefetch(from + at);
+  for (size_t at = 0; at < sizeof(*place) * SD_GROUP_POINTS; at += 64) sd_fetch(from + at);
 }
 
 /* Points from one on up to another, which are in no run */
