@@ -27,8 +27,8 @@ class Guess : protected LAMMPS_NS::Pointers {
    * which leave nothing to begin from and are no guess of anything */
   enum Question { FORCES, MOTIONS, NOISY_MOTIONS };
 
-  /* l: forces of the points on the fluid, v: with films velocities of the spheres, else empty; both by rows, as
-   * the core has them (sd_bodies_answer); zeros unless the solve is to begin from them, warm */
+  /* l: forces of the points on the fluid, v: with films velocities of the spheres, else empty; both by rows,
+   * as the core has them (sd_bodies_answer); zeros unless the solve is to begin from them, warm */
   struct Start {
     bool warm;
     std::vector<double> l, v;

@@ -40,7 +40,8 @@ struct StokesSettings {
   /* Are solutions kept, from which the next solve begins? Substitution begins from 0, but it hands over to
    * gradients. */
   bool history() const { return warm_start && !strict; }
-  /* Are spheres points that bear nothing but their loads, unless they are held? Then there is nothing to solve */
+  /* Are spheres points that bear nothing but their loads, unless they are held? Then there is nothing to
+   * solve. */
   bool forces_are_loads() const
   {
     return !shells.on() && !lubrication.on && !(rigid.on && !rigid.each_alone());

@@ -5,8 +5,8 @@
 
 #include "sd_body.h"
 
-/* pre(r, f): l and V; r, f NULL: 0. Of held bodies V is read. bears: what sd_bodies_alone_bear made of r; NULL:
- * not known. */
+/* pre(r, f): l and V; r, f NULL: 0. Of held bodies V is read. bears: what sd_bodies_alone_bear made of r;
+ * NULL: not known. */
 void sd_bodies_alone(const sd_bodies *A, const double *r, const double *bears, const double *f,
                      double *scratch, double *l, double *V);
 /* f [6 bodies] = K^T M_b'^-1 r */

@@ -100,8 +100,8 @@ static inline long sd_bodies_loads(const sd_bodies *A)
 void sd_bodies_move(const sd_bodies *A, const double *V, double *on_spheres, double *rows);
 void sd_bodies_collect(const sd_bodies *A, const double *rows, double *on_spheres, double *f);
 
-/* K V of rows begin ... end - 1, of a few points at a time, so that whoever needs it once finds it in the cache.
- * moved: what sd_bodies_move_spheres makes of V, in on_spheres [6 spheres] or V itself. From zero on
+/* K V of rows begin ... end - 1, of a few points at a time, so that whoever needs it once finds it in the
+ * cache. moved: what sd_bodies_move_spheres makes of V, in on_spheres [6 spheres] or V itself. From zero on
  * sd_bodies_next goes to the next ones; returns 0 behind the last. */
 enum { SD_BODIES_PART = 96 };
 typedef struct {

@@ -33,8 +33,8 @@ typedef struct {
   double eta;
 } sd_clump_placed;
 
-/* What is told of its spheres, of sphere k from width k on: v [6] velocity and angular velocity; F, T [3] force
- * and torque of the fluid on it, T NULL: not wanted */
+/* What is told of its spheres, of sphere k from width k on: v [6] velocity and angular velocity; F, T [3]
+ * force and torque of the fluid on it, T NULL: not wanted */
 typedef struct {
   int width;
   double *v, *F, *T;

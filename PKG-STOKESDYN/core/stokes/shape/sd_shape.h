@@ -76,8 +76,9 @@ int sd_shape_match(const sd_shape *shape, int n, const double *x, const double *
  * clump, and for one that is not the deviation says so. */
 double sd_shape_pose(const sd_shape *shape, const double *x, double R[9], double c[3]);
 
-/* Columns of E: the main axes of a shape of rank 2, whose signs are those of its frame; right- or left-handed.
- * Returns 1; 0 where two of its moments along them are alike to a hundredth, so that rounding would turn them. */
+/* Columns of E: the main axes of a shape of rank 2, whose signs are those of its frame; right- or
+ * left-handed. Returns 1; 0 where two of its moments along them are alike to a hundredth, so that rounding
+ * would turn them. */
 int sd_shape_main_axes(const sd_shape *shape, double E[9]);
 
 /* The largest of `most` and (|v|/a)^2 of the spheres of a shape that moves with U [3] of the point at `from`
