@@ -198,11 +198,11 @@ void PairStokesDynamics::init_style()
   require_atoms();
   single_enable = force->pair != this;    // alone it would say that there are no forces
   const Scene::Settings &scene = hydro.settings.scene;
-  if (hydro.settings.precondition == Preconditioner::WAVES &&
+  if (hydro.settings.precondition == StokesSettings::WAVES &&
       !(domain->xperiodic && domain->yperiodic && domain->zperiodic))
     voice.fail("keyword precondition: 'waves' requires a periodic box");
   const bool may_precondition = hydro.settings.algorithm == StokesSettings::GRADIENTS &&
-      hydro.settings.precondition != Preconditioner::NONE;
+      hydro.settings.precondition != StokesSettings::NONE;
   if (hydro.settings.rigid.on || may_precondition) check_room_of_blas(voice);
 
   double largest = 0.0;
@@ -258,7 +258,7 @@ void PairStokesDynamics::require_atoms()
                "such as sphere");
   if (atom->molecule_flag) return;
   const std::string ways = " (atom_style hybrid sphere bond, or fix property/atom mol)";
-  if (settings.precondition == Preconditioner::CLUMP)
+  if (settings.precondition == StokesSettings::CLUMP)
     voice.fail("keyword precondition: 'clump' requires molecule IDs");
   if (settings.scene.clumps_only)
     voice.fail("keyword clumps_only: yes requires molecule IDs" + ways);

@@ -24,7 +24,7 @@ def joined(strings):
 def facts(room):
     """Of the enum StokesFact and its like: what the page says of each, which is the comment behind it."""
     words = {}
-    for header in sorted((PACKAGE / room).glob("neighbours*.h")):
+    for header in sorted((PACKAGE / room).rglob("neighbours*.h")):
         for enum in re.findall(r"enum \w+Fact\b[^{]*\{(.*?)\};", header.read_text(), re.S):
             words.update(re.findall(r"(\w+) = 1 << \d+,\s*// (.*)", enum))
     return words
@@ -33,7 +33,7 @@ def facts(room):
 def rows_of_code(room):
     """Every row, in its order and in the words of the page."""
     words, rows = facts(room), []
-    for path in sorted((PACKAGE / room).glob("neighbours*.cpp")):
+    for path in sorted((PACKAGE / room).rglob("neighbours*.cpp")):
         for row in ROW.finditer(path.read_text()):
             where = [] if row["where"] == "0" else [words[name.strip()] for name in row["where"].split("|")]
             styles = " ".join(f"`{style}`" for style in joined(row["styles"]).split())

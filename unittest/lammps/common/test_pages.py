@@ -56,6 +56,11 @@ def joined(code):
     return words + (HOLE if code[at:].strip() else "")
 
 
+def room_of(path):
+    """Of a file of the glue: common, stokes, sph or vans; of those above, the package itself"""
+    return PACKAGE.name if path.parent == PACKAGE else path.relative_to(PACKAGE).parts[0]
+
+
 def messages():
     """(folder, file, message) of all errors and warnings of the glue, the status texts of the core, the loader's
     reasons."""
@@ -67,10 +72,10 @@ def messages():
             code, end = last_argument(source, call.end())
             for way in (r"\1", r"\2"):
                 if TEXT.search(code):
-                    yield path.parent.name, path.name, joined(EITHER.sub(way, code))
+                    yield room_of(path), path.name, joined(EITHER.sub(way, code))
         for table in re.findall(r"\bwhy\[\] = \{(.*?)\};", source, re.S):
             for code in re.split(r",\s*(?=\")", table):
-                yield path.parent.name, path.name, joined(code)
+                yield room_of(path), path.name, joined(code)
     status = without_comments((PACKAGE / "core/base/sd_status.h").read_text())
     for text in re.findall(r"_\(SD_\w+, \"(.*?)\"\)", status):
         yield "stokes", "sd_status.h", text
@@ -150,7 +155,7 @@ def test_messages_lead_back_to_the_page_of_their_style(name):
     assert rows(name) and any(f"]({name})" in PAGES[style] for style in linked & set(STYLES))
 
 
-KEYWORDS = sorted({(path.parent.name, keyword) for path in PACKAGE.rglob("*.cpp")
+KEYWORDS = sorted({(room_of(path), keyword) for path in PACKAGE.rglob("*.cpp")
                    for keyword in re.findall(r"\{\"(\w+)\",\s*\[", path.read_text())})
 
 
@@ -292,5 +297,5 @@ def test_the_page_shows_the_table_of_neighbours_row_by_row(room):
 
 def test_there_are_neighbours():
     assert len(neighbour_tables.rows_of_code("stokes")) > 10
-    source = "".join(path.read_text() for path in (PACKAGE / "stokes").glob("neighbours*.cpp"))
+    source = "".join(path.read_text() for path in (PACKAGE / "stokes").rglob("neighbours*.cpp"))
     assert len(neighbour_tables.rows_of_code("stokes")) == source.count("{N::")

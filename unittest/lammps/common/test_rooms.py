@@ -52,9 +52,9 @@ def test_a_room_sees_itself_and_what_is_below(target):
 
 def test_who_asks_the_boundary_stands_in_the_map():
     stokes = TOP / "PKG-STOKESDYN" / "stokes"
-    asks = {path.stem for path in stokes.iterdir() if re.search(r"\bboundary\.(?!h\b)\w|[.&]boundary\b|\bboundary,",
+    asks = {path.stem for path in stokes.rglob("*.*") if re.search(r"\bboundary\.(?!h\b)\w|[.&]boundary\b|\bboundary,",
                                                                 path.read_text())}
-    asks -= {"boundary", "boundary_checks"}
+    asks -= {"boundary", "boundary_checks", "scene_at_boundary"}
     listed = re.search(r"\n\* \*\*Walls\.\*\*(.*?)\n\* ", (TOP / "PKG-STOKESDYN" / "README.md").read_text(),
                        re.S).group(1)
     assert "scene" in asks
@@ -153,12 +153,42 @@ def test_no_files_of_the_glue_include_each_other_in_a_circle():
     includes them."""
     texts = {}
     for room in ("common", "stokes", "sph", "vans"):
-        for path in (TOP / "PKG-STOKESDYN" / room).iterdir():
+        for path in (TOP / "PKG-STOKESDYN" / room).rglob("*"):
             if path.suffix in (".h", ".cpp"):
                 texts[path.stem] = texts.get(path.stem, "") + path.read_text()
     includes = {name: set(re.findall(r'#include "([^"]+)\.h"', text)) & set(texts) for name, text in texts.items()}
     assert "pair_sph_artvisc_tenscorr" in includes["fix_sph_friction"] and "scene" in includes["solve"]
     assert circles(includes) == {}
+
+
+def room_of(path):
+    """Its folder; the rooms below ewald, which share its headers, count as one with it"""
+    return re.sub("/ewald/.*", "/ewald", path.parent.relative_to(TOP / "PKG-STOKESDYN").as_posix())
+
+
+def arrows_between_rooms():
+    """{room: rooms whose headers it includes}"""
+    files = [path for path in (TOP / "PKG-STOKESDYN").rglob("*") if path.suffix in (".c", ".h", ".cpp")]
+    room = {path.name: room_of(path) for path in files}
+    arrows = {name: set() for name in room.values()}
+    for path in files:
+        arrows[room_of(path)] |= {room[name] for name in re.findall(r'#include "([^"]+)"', path.read_text())
+                                  if name in room}
+    return {name: below - {name} for name, below in arrows.items()}
+
+
+def test_no_rooms_include_each_other_in_a_circle():
+    arrows = arrows_between_rooms()
+    assert "core/stokes/bodies" in arrows["stokes/bodies"] and "stokes/fluid" in arrows["stokes/scene"]
+    assert circles(arrows) == {}
+
+
+def test_the_map_has_the_rooms_of_stokes_from_above():
+    order = re.findall(r"^\| `(stokes/\w+)/` \|", (TOP / "PKG-STOKESDYN" / "README.md").read_text(), re.M)
+    arrows = arrows_between_rooms()
+    assert set(order) == {name for name in arrows if name.startswith("stokes/")}
+    for number, name in enumerate(order):
+        assert arrows[name] & set(order) <= set(order[number:]), name
 
 
 # --- how sources read -------------------------------------------------------------------------------------------------

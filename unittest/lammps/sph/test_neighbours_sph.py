@@ -78,7 +78,7 @@ ELSEWHERE = {("FIX rheo*", "0"): ("fix", "rheo"),
 
 
 def rows(room):
-    for path in sorted((PACKAGE / room).glob("neighbours*.cpp")):
+    for path in sorted((PACKAGE / room).rglob("neighbours*.cpp")):
         for row in ROW.finditer(path.read_text()):
             yield f"{row['kind']} {joined(row['styles'])}", row["where"], row["verdict"]
 

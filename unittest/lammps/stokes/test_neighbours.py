@@ -158,7 +158,7 @@ ANYWHERE = [
      "compute thermo_press of style pressure knows nothing of the forces"),
 ]
 def rows():
-    for path in sorted((PACKAGE / "stokes").glob("neighbours*.cpp")):
+    for path in sorted((PACKAGE / "stokes").rglob("neighbours*.cpp")):
         for row in ROW.finditer(path.read_text()):
             yield f"{row['kind']} {joined(row['styles'])}", row["where"], row["verdict"]
 

@@ -1,8 +1,8 @@
 /* The scene of Ewald sums: the box, how the sum is split, and whether that pays. */
 #include "scene.h"
 
-#include "boundary_checks.h"
 #include "keywords.h"
+#include "scene_at_boundary.h"
 
 #include "sd_ewald_cost.h"
 

@@ -3,29 +3,14 @@
 #include "ambient.h"
 #include "fixes.h"
 #include "keywords.h"
-#include "ranks.h"
 #include "scene.h"
 #include "settings.h"
 
 #include "domain.h"
 
-#include "sd_constants.h"
-
-#include <algorithm>
-#include <cmath>
-
 using namespace LAMMPS_NS;
 
 namespace StokesDyn {
-
-static const char AXES[] = "xyz";
-
-// --- before a run --------------------------------------------------------------------------------
-
-static double side_of_box(const Domain *domain, const sd_wall &wall)
-{
-  return wall.sign > 0 ? domain->boxlo[wall.axis] : domain->boxhi[wall.axis];
-}
 
 /* Is a side of a triclinic box at right angles to its axis? */
 static bool upright(const Domain *domain, int axis)
@@ -57,7 +42,7 @@ static void check_walls(const Voice &voice, const Boundary &boundary, int period
 {
   const Domain *domain = voice.lmp->domain;
   const int across = boundary.wall[0].axis;
-  const std::string axis(1, AXES[across]);
+  const std::string axis(1, axis_name(across));
   if (domain->periodicity[across])
     voice.fail("keyword wall: it needs boundary f, s or m across it, and " + axis +
                " is periodic: use " +
@@ -125,9 +110,6 @@ static void check_slab(const Voice &voice, const StokesSettings &s)
   check_sums(voice, s);
 }
 
-static const std::string GIVE_WALLS =
-    ": give the pair style a wall (a floor, or two walls), or use boundary p p p";
-
 /* The stream must rest at a wall. */
 static void check_stream(const Voice &voice, const sd_wall &wall, const Ambient::Settings &fluid)
 {
@@ -136,7 +118,7 @@ static void check_stream(const Voice &voice, const sd_wall &wall, const Ambient:
     const int d = (wall.axis + k) % 3;
     const Field &u = fluid.velocity[d];
     if (u.is_variable() || u.number() == 0.0) continue;
-    const std::string there = wall_name(wall) + ", and its component " + AXES[d] + " is '" +
+    const std::string there = wall_name(wall) + ", and its component " + axis_name(d) + " is '" +
         text(u.number()) + "' there: ";
     if (k == 3)
       voice.fail("keyword fluid_velocity: nothing flows through the wall " + there +
@@ -170,27 +152,6 @@ void find_boundary(const Voice &voice, StokesSettings &settings)
   for (int w = 0; w < boundary.walls; w++) check_stream(voice, boundary.wall[w], settings.ambient);
 }
 
-/* Less is what interpolation on a grid leaves of nothing. */
-static const double RESTS = 1e-3;
-
-void check_stream_at_walls(const Voice &voice, const Boundary &boundary, Ambient &ambient, bool films)
-{
-  for (int w = 0; w < boundary.walls; w++) {
-    const sd_wall &wall = boundary.wall[w];
-    double part[2];
-    ambient.look_at_plane(wall.axis, wall.at, part);
-    if (part[1] > RESTS)
-      voice.at_step().fail("keyword fluid_velocity: nothing flows through the wall " + wall_name(wall) +
-                           ", and its component " + AXES[wall.axis] + " there is " + text(part[1]) +
-                           " of the largest velocity: give one that is 0 at the wall");
-    if (films && part[0] > RESTS)
-      voice.at_step().fail("keyword fluid_velocity: the fluid moves along the wall " + wall_name(wall) +
-                           ", where its velocity is " + text(part[0]) +
-                           " of the largest, and the films of keyword lubrication are those of walls "
-                           "at rest: give a velocity that is 0 at the wall, or lubrication no");
-  }
-}
-
 /* A force along a layer shears the fluid beyond it without end. */
 void check_layer(const Voice &voice, const StokesSettings &s, bool overdamped)
 {
@@ -200,11 +161,11 @@ void check_layer(const Voice &voice, const StokesSettings &s, bool overdamped)
         "boundary: in a box without walls that is periodic in two directions drags that follow "
         "from velocities have a net force along it, which shears the fluid above and below "
         "without end" +
-        GIVE_WALLS + ", or fix stokes_dynamics/overdamped");
+        Boundary::GIVE_WALLS + ", or fix stokes_dynamics/overdamped");
   if (s.shells.on() || s.rigid.on)
     voice.fail("boundary: in a box without walls that is periodic in two directions multiblobs and "
                "rigid clumps are not available" +
-               GIVE_WALLS);
+               Boundary::GIVE_WALLS);
 }
 
 void refuse_in_layer(const Voice &voice, const Boundary &boundary, const std::string &holds, bool noisy)
@@ -214,11 +175,11 @@ void refuse_in_layer(const Voice &voice, const Boundary &boundary, const std::st
     voice.fail(
         holds + ": in a box without walls that is periodic in two directions spheres that are held "
         "have a net force along it, which shears the fluid above and below without end" +
-        GIVE_WALLS);
+        Boundary::GIVE_WALLS);
   if (noisy)
     voice.fail("keyword temperature: in a box without walls that is periodic in two directions the "
                "diffusion of all spheres together along it has no bound" +
-               GIVE_WALLS);
+               Boundary::GIVE_WALLS);
 }
 
 void refuse_moving_box(const Voice &voice, const Boundary &boundary)
@@ -232,91 +193,6 @@ void refuse_moving_box(const Voice &voice, const Boundary &boundary)
         ", periodic "
         "along it, boxes must stay as they are: leave it out, or use boundary p p p without wall");
   }
-}
-
-// --- in every step -------------------------------------------------------------------------------
-
-/* Fewer spheres than are counted here cut both walls. */
-static double cut_by(const Voice &voice, const Scene &scene, const sd_wall &wall, bool at_edge)
-{
-  const sd_spheres spheres = scene.local();
-  const Domain *domain = voice.lmp->domain;
-  double cut = 0.0;
-  if (at_edge && wall.at != side_of_box(domain, wall))
-    voice.at_step().fail("keyword wall: EDGE: that side of the box is at " +
-                         text(side_of_box(domain, wall)) + " now and was at " + text(wall.at) +
-                         " when the run began: walls do not move; give its position");
-  for (int k = 0; k < scene.size(); k++) {
-    const double height = sd_wall_height(&wall, spheres.x + 3 * (size_t) k);
-    cut += height < spheres.a[k];
-    if (height > 0.0) continue;
-    voice.at_step().fail_one("keyword wall: the centre of atom " + std::to_string(scene.tag(k)) +
-                             ", radius " + text(spheres.a[k]) + ", is " + text(0.0 - height) +
-                             " behind the wall " + wall_name(wall) +
-                             ": spheres must stand in "
-                             "front of it; is it on the right side? A contact (fix wall/gran) or a "
-                             "shorter time step keeps them there");
-  }
-  return cut;
-}
-
-void refuse_wide_spheres(const Voice &voice, const Boundary &boundary, double largest)
-{
-  const sd_wall *wall = boundary.wall;
-  if (boundary.kind != Boundary::SLIT || 2.0 * largest <= wall[1].at - wall[0].at) return;
-  voice.at_step().fail("keyword wall: the largest sphere, radius " + text(largest) +
-                       ", does not fit "
-                       "between " +
-                       wall_name(wall[0]) + " and " + wall_name(wall[1]) +
-                       ": the walls must be at least " + text(2.0 * largest) + " apart");
-}
-
-double spheres_cut_by_wall(const Voice &voice, const Scene &scene)
-{
-  const Boundary &boundary = scene.settings.boundary;
-  double cut = 0.0;
-  for (int w = 0; w < boundary.walls; w++)
-    cut += cut_by(voice, scene, boundary.wall[w], boundary.at_edge[w]);
-  return sum_of_all(voice.lmp->world, cut);
-}
-
-double least_lone_mobility(const Scene &scene)
-{
-  const Boundary &boundary = scene.settings.boundary;
-  const sd_spheres spheres = scene.local();
-  double least = 1.0;
-  if (!boundary.walled()) return least;
-  for (int k = 0; k < scene.size(); k++) {
-    const double a = spheres.a[k], *x = spheres.x + 3 * (size_t) k;
-    const sd_wall &wall = boundary.nearest(x);
-    double image[9];
-    sd_wall_block(&wall, 3, x, a, x, a, 1.0, image);
-    least = std::min(least, 1.0 + 6.0 * SD_PI * a * image[4 * wall.axis]);
-  }
-  return least;
-}
-
-void refuse_net_force(const Voice &voice, const Scene &scene, const std::vector<double> &F,
-                      size_t width)
-{
-  const Boundary &boundary = scene.settings.boundary;
-  if (boundary.kind != Boundary::LAYER) return;
-  double sums[4] = {0.0};    // of forces along it, and of their sizes
-  const int along[2] = {(boundary.across + 1) % 3, (boundary.across + 2) % 3};
-  for (size_t k = 0; k < (size_t) scene.size(); k++)
-    for (int d = 0; d < 2; d++) {
-      sums[d] += F[width * k + along[d]];
-      sums[2 + d] += std::fabs(F[width * k + along[d]]);
-    }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, voice.lmp->world);
-  for (int d = 0; d < 2; d++)
-    if (std::fabs(sums[d]) > 1e-6 * sums[2 + d])
-      voice.at_step().fail(
-          "the forces along " + std::string(1, AXES[along[d]]) + " add up to " + text(sums[d]) +
-          ": in a box without walls that is periodic in two "
-          "directions a net force along it shears the fluid above and below without "
-          "end" +
-          GIVE_WALLS + ", or forces that add up to 0");
 }
 
 }    // namespace StokesDyn

@@ -4,7 +4,6 @@
 
 #include "ambient.h"
 #include "lubrication.h"
-#include "preconditioner.h"
 #include "rigid_clumps.h"
 #include "scene.h"
 
@@ -30,7 +29,9 @@ struct StokesSettings {
   /* algorithm 1 stops where it diverges, instead of going on with 2 */
   bool strict = false;
   bool warm_start = true;
-  Preconditioner::Kind precondition = Preconditioner::AUTO;
+  /* Of algorithm 2: which kind of preconditioner, or the rule that chooses (preconditioner.h) */
+  enum Precondition { AUTO, NONE, CLUMP, SPARSE, WAVES };
+  Precondition precondition = AUTO;
   Ambient::Settings ambient;
   Scene::Settings scene;
   RigidClumps::Settings rigid;

@@ -1,8 +1,7 @@
 #include "body_scene.h"
 
-#include "boundary_checks.h"
 #include "keywords.h"
-#include "settings.h"
+#include "scene_at_boundary.h"
 
 #include "sd_linear.h"
 
@@ -15,10 +14,10 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-BodyScene::BodyScene(LAMMPS *lmp, Scene &scene, const Ambient &ambient, RigidClumps &rigid,
+BodyScene::BodyScene(const Voice &voice, Scene &scene, const Ambient &ambient, RigidClumps &rigid,
                      const ClumpPoses &poses, const Given &given, Lubrication &lubrication) :
-    Pointers(lmp), scene(scene), ambient(ambient), rigid(rigid), poses(poses), given(given),
-    lubrication(lubrication)
+    Pointers(voice.lmp), scene(scene), ambient(ambient), rigid(rigid), poses(poses), given(given),
+    lubrication(lubrication), voice(voice)
 {
 }
 
@@ -49,7 +48,7 @@ void BodyScene::place(int numbers)
   };
   scene.columns(row, {{&F, m}, {&flow, m}, {&resistance, m}});
   if (given.velocities) return;
-  refuse_net_force(Voice(lmp, StokesSettings::COMMAND), scene, F, m);
+  refuse_net_force(voice, scene, F, m);
   scene.drift(flow.data(), width, 1.0);
 }
 
@@ -317,9 +316,7 @@ void BodyScene::stand_at_wall()
   for (sd_body &body : shaped) {
     const sd_status status = stand_at_wall(body, count);
     if (status != SD_OK)
-      Voice(lmp, StokesSettings::COMMAND)
-          .of("keyword wall: blocks of a body")
-          .fail_one(sd_status_string(status));
+      voice.of("keyword wall: blocks of a body").fail_one(sd_status_string(status));
   }
 }
 

@@ -16,6 +16,10 @@
 #include <string>
 #include <vector>
 
+namespace LAMMPS_NS {
+class Domain;
+}
+
 namespace StokesDyn {
 
 class Keywords;
@@ -56,10 +60,16 @@ struct Boundary {
   std::string letters() const;
   /* Where those at sides of the box stand now, to tell one state from another */
   std::vector<std::string> edges() const;
+  /* What errors of a LAYER advise */
+  inline static const std::string GIVE_WALLS =
+      ": give the pair style a wall (a floor, or two walls), or use boundary p p p";
 };
 
 /* "zlo at 0.5" */
 std::string wall_name(const sd_wall &wall);
+inline char axis_name(int d) { return "xyz"[d]; }
+/* Where the side of the box stands now that bears its name */
+double side_of_box(const LAMMPS_NS::Domain *domain, const sd_wall &wall);
 
 }    // namespace StokesDyn
 #endif

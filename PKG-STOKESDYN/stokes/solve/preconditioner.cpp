@@ -14,6 +14,8 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
+using Settings = StokesSettings;
+
 /* Unknowns whose matrix is inverted as it is. A product with the inverse takes about as long as one
  * with the matrix, making it as long as some hundred. */
 static const int FEW = 200;
@@ -23,20 +25,20 @@ const sd_precondition_kind *Preconditioner::suited() const
 {
   const bool periodic = scene.splitting() && scene.splitting()->box.periodic;
   Kind that = kind;
-  if (kind == AUTO) {
+  if (kind == Settings::AUTO) {
     if (periodic)
-      that = WAVES;
+      that = Settings::WAVES;
     else if (scene.view() == SD_VIEW_ALL)
-      that = !few() ? SPARSE : easy ? NONE : CLUMP;
+      that = !few() ? Settings::SPARSE : easy ? Settings::NONE : Settings::CLUMP;
     else
-      that = atom->molecule ? CLUMP : NONE;
+      that = atom->molecule ? Settings::CLUMP : Settings::NONE;
   }
   switch (that) {
-    case CLUMP:
+    case Settings::CLUMP:
       return &sd_precondition_blocks;
-    case SPARSE:
+    case Settings::SPARSE:
       return &sd_precondition_sparse;
-    case WAVES:
+    case Settings::WAVES:
       return &sd_precondition_waves;
     default:
       return nullptr;
@@ -102,7 +104,7 @@ void Preconditioner::group()
 {
   first.assign(1, 0);
   member.clear();
-  if (kind == AUTO && few()) {
+  if (kind == Settings::AUTO && few()) {
     for (int i = 0; i < n; i++) member.push_back(i);
     first.push_back(n);
   } else if (wanted != &sd_precondition_sparse)

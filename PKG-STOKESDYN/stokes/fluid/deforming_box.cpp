@@ -2,8 +2,8 @@
 
 #include "deform_settings.h"
 #include "fixes.h"
-#include "halo.h"
 #include "keywords.h"
+#include "lattice.h"
 #include "ranks.h"
 
 #include "sd_flow.h"

@@ -1,9 +1,10 @@
-#include "boundary_checks.h"
 #include "hydrodynamics.h"
 
+#include "boundary_checks.h"
 #include "callback.h"
 #include "checks.h"
 #include "keywords.h"
+#include "scene_at_boundary.h"
 
 #include "atom.h"
 #include "force.h"
@@ -29,7 +30,7 @@ Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
     rigid(voice, scene.whole, epochs, settings.rigid),
     lubrication(voice, settings.lubrication, settings.shells),
     clump_poses(lmp, scene, ambient, rigid, given),
-    bodies(lmp, scene, ambient, rigid, clump_poses, given, lubrication),
+    bodies(voice, scene, ambient, rigid, clump_poses, given, lubrication),
     solver(lmp, scene, bodies, ambient, shells, settings), guard(voice)
 {
 }

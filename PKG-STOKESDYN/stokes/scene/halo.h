@@ -8,6 +8,7 @@
 #ifndef SD_HALO_H
 #define SD_HALO_H
 
+#include "lattice.h"
 #include "ranks.h"
 
 #include "sd_lattice.h"
@@ -16,21 +17,7 @@
 #include <initializer_list>
 #include <vector>
 
-namespace LAMMPS_NS {
-class Domain;
-}
-
 namespace StokesDyn {
-
-/* The parallelepiped that LAMMPS repeats in the directions with periodic = 1. */
-struct Lattice {
-  double origin[3];
-  /* xx yy zz yz xz xy, the order of LAMMPS: edges (h0 0 0), (h5 h1 0), (h4 h3 h2) */
-  double h[6];
-  int periodic[3];
-
-  static Lattice of(const LAMMPS_NS::Domain *domain);
-};
 
 class Halo {
  public:

@@ -2,6 +2,8 @@
 
 #include "keywords.h"
 
+#include "domain.h"
+
 #include <algorithm>
 
 namespace StokesDyn {
@@ -19,12 +21,17 @@ static bool names_a_side(const std::string &word)
 
 static std::string side_name(const sd_wall &wall)
 {
-  return std::string(1, "xyz"[wall.axis]) + (wall.sign > 0 ? "lo" : "hi");
+  return std::string(1, axis_name(wall.axis)) + (wall.sign > 0 ? "lo" : "hi");
 }
 
 std::string wall_name(const sd_wall &wall)
 {
   return side_name(wall) + " at " + text(wall.at);
+}
+
+double side_of_box(const LAMMPS_NS::Domain *domain, const sd_wall &wall)
+{
+  return wall.sign > 0 ? domain->boxlo[wall.axis] : domain->boxhi[wall.axis];
 }
 
 void Boundary::read_wall(Keywords &in)

@@ -27,7 +27,7 @@ namespace StokesDyn {
 
 class BodyScene : protected LAMMPS_NS::Pointers {
  public:
-  BodyScene(LAMMPS_NS::LAMMPS *lmp, Scene &, const Ambient &, RigidClumps &, const ClumpPoses &,
+  BodyScene(const Voice &voice, Scene &, const Ambient &, RigidClumps &, const ClumpPoses &,
             const Given &, Lubrication &);
 
   /* Vectors have that many numbers of a sphere. The scene has been updated, and the clumps found. */
@@ -87,6 +87,7 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   const ClumpPoses &poses;
   const Given &given;
   Lubrication &lubrication;
+  const Voice voice;
   Owned<sd_tie, sd_tie_free> tie;
 
   /* for the core, by spheres, by points */

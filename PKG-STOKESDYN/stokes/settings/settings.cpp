@@ -32,7 +32,7 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
     scene.far_field_tolerance = std::max(1e-13, 0.1 * tolerance);
   scene.residual = tolerance;
   // What Ewald sums have not got.
-  if (scene.tensor == SD_TENSOR_OSEEN || precondition == Preconditioner::SPARSE)
+  if (scene.tensor == SD_TENSOR_OSEEN || precondition == SPARSE)
     scene.far_field = Scene::Settings::DIRECT;
   // Points on a surface take torques, whether rotation is asked for or not.
   if (rigid.shell > 1 || shells.on()) scene.rotation = true;
@@ -161,7 +161,7 @@ void StokesSettings::parse(Keywords &in)
       {"far_field", [&] { scene.far_field = in.choice({"auto", "direct", "ewald"}); }},
       {"far_field_tolerance", [&] { take_far_field_tolerance(in); }},
       {"precondition",
-       [&] { precondition = (Preconditioner::Kind) in.choice({"auto", "none", "clump", "sparse", "waves"}); }},
+       [&] { precondition = (Precondition) in.choice({"auto", "none", "clump", "sparse", "waves"}); }},
       {"warm_start", [&] { warm_start = in.yes_no(); }},
   });
 }
@@ -216,9 +216,9 @@ void StokesSettings::check(const Keywords &in) const
              "keyword cut_off_distance is required (a distance or inf) unless clumps_only yes");
   in.require(scene.taper == SD_TAPER_NONE || std::isfinite(scene.cutoff),
              "keyword taper requires a cut_off_distance, its range");
-  in.require(precondition != Preconditioner::SPARSE || all_pairs,
+  in.require(precondition != SPARSE || all_pairs,
              "keyword precondition: 'sparse' requires cut_off_distance inf and clumps_only no");
-  in.require(precondition != Preconditioner::SPARSE || !by_ewald,
+  in.require(precondition != SPARSE || !by_ewald,
              "keyword precondition: 'sparse' is not available with far_field ewald");
   in.require(!in.given("far_field") || all_pairs,
              "keyword far_field requires cut_off_distance inf and clumps_only no");
@@ -229,12 +229,12 @@ void StokesSettings::check(const Keywords &in) const
   in.require(!by_ewald || scene.tensor != SD_TENSOR_OSEEN,
              "keyword far_field: 'ewald' is not available with tensor oseen");
   check_close_spheres(in, all_pairs);
-  in.require(precondition != Preconditioner::SPARSE || algorithm == GRADIENTS,
+  in.require(precondition != SPARSE || algorithm == GRADIENTS,
              "keyword precondition: 'sparse' requires algorithm 2");
-  in.require(precondition != Preconditioner::WAVES || (all_pairs && algorithm == GRADIENTS),
+  in.require(precondition != WAVES || (all_pairs && algorithm == GRADIENTS),
              "keyword precondition: 'waves' requires cut_off_distance inf, clumps_only no and "
              "algorithm 2");
-  in.require(precondition != Preconditioner::CLUMP || algorithm == GRADIENTS,
+  in.require(precondition != CLUMP || algorithm == GRADIENTS,
              "keyword precondition: 'clump' requires algorithm 2");
   in.require(!rigid.auto_resolve || scene.clumps_only,
              "keyword rigid_clumps: 'auto' requires clumps_only yes");
@@ -263,7 +263,7 @@ void StokesSettings::check_with_walls(const Keywords &in)
   in.require(scene.far_field != Scene::Settings::EWALD || !torques,
              "keyword wall: far_field ewald has no images of torques in a wall: use multiblob 12 in "
              "place of rotation yes, or far_field auto, which takes all pairs");
-  in.require(precondition != Preconditioner::WAVES,
+  in.require(precondition != WAVES,
              "keyword wall: precondition waves is for periodic boxes: use precondition auto");
   in.require(!rigid.each_alone(),
              "keyword wall: with clumps_only yes rigid clumps have a resistance that is computed "

@@ -1,8 +1,8 @@
-#include "boundary_checks.h"
 #include "time_step_guard.h"
 
 #include "callback.h"
 #include "keywords.h"
+#include "scene_at_boundary.h"
 
 #include "atom.h"
 #include "fix.h"

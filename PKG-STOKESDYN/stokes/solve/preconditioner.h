@@ -15,6 +15,7 @@
 #include "rows_fix.h"
 #include "pointers.h"
 #include "scene.h"
+#include "settings.h"
 
 #include "sd_preconditioner.h"
 
@@ -24,8 +25,9 @@ namespace StokesDyn {
 
 class Preconditioner : protected LAMMPS_NS::Pointers {
  public:
-  enum Kind { AUTO, NONE, CLUMP, SPARSE, WAVES };
-  Kind kind = AUTO;
+  /* as keyword precondition has it */
+  using Kind = StokesSettings::Precondition;
+  Kind kind = StokesSettings::AUTO;
   /* Do solves begin near to what is good enough, from the last ones to a loose tolerance? */
   bool easy = false;
 
