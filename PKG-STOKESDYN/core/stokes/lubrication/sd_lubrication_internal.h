@@ -2,6 +2,8 @@
 #ifndef SD_LUBRICATION_INTERNAL_H
 #define SD_LUBRICATION_INTERNAL_H
 
+#include <math.h>
+
 #include "sd_isa.h"
 #include "sd_linear.h"
 #include "sd_lubrication.h"
@@ -64,6 +66,30 @@ struct sd_lubrication_kernels {
 };
 
 SD_KERNEL_TABLES(struct sd_lubrication_kernels, sd_lubrication);
+
+/* Finds the pairs of a scene, `close` of each and the d of its link, and how many there are. On all ranks
+ * together. SD_OK; SD_ENOMEMORY; that of refresh. */
+sd_status sd_lubrication_find_pairs(sd_lubrication *L, const sd_lubrication_scene *s);
+
+/* Of a pair, over its mean radius */
+static inline double film_range_of(const sd_lubrication_scene *s, double ai, double aj)
+{
+  const double sum = ai + aj;
+  return s->points ? s->range * 4.0 * ai * aj / (sum * sum) : s->range;
+}
+
+/* The gap of a pair over its mean radius, and t of it */
+static inline double gap_of_film(const sd_lubrication_scene *s, int i, const closeness *c)
+{
+  return 2.0 * (c->distance / (s->spheres.a[i] + s->spheres.a[c->at]) - 1.0);
+}
+
+static inline double weight_of_film(const sd_lubrication_scene *s, int i, const closeness *c)
+{
+  const double range = film_range_of(s, s->spheres.a[i], s->spheres.a[c->at]);
+  const double q = fmin(fmax(2.0 * gap_of_film(s, i, c) / range - 1.0, 0.0), 1.0);
+  return 1.0 - q * q * (3.0 - 2.0 * q);
+}
 
 /* out += B V for a block of a pair */
 static inline void add_product(const sd_lubrication_link *B, const double *V, double *out)

@@ -149,28 +149,31 @@ INLINE void interpolate_run(int rows, const spreading *s, const sd_spread_run *r
   }
 }
 
-/* A copy for each number of rows */
-#define OF_ROWS(_) _(4) _(5) _(6) _(7) _(8) _(9) _(10)
+/* A copy of the work for each number of rows */
+#define OF_ROWS(rows, work) \
+  case rows: \
+    work(rows, s, run, next, &w); \
+    break;
+#define BY_ROWS(work) \
+  switch (run->size[1]) { \
+    OF_ROWS(4, work) OF_ROWS(5, work) OF_ROWS(6, work) OF_ROWS(7, work) \
+    OF_ROWS(8, work) OF_ROWS(9, work) OF_ROWS(10, work) \
+  }
 
 static void spread_one_run(const spreading *s, const sd_spread_run *run, const sd_spread_run *next)
 {
   run_windows w;
   windows_of_all(s, run, &w);
-#define SPREAD(rows) \
-  if (run->size[1] == (rows)) spread_run(rows, s, run, next, &w);
-  OF_ROWS(SPREAD)
-#undef SPREAD
+  BY_ROWS(spread_run)
 }
 
 static void interpolate_one_run(const spreading *s, const sd_spread_run *run, const sd_spread_run *next)
 {
   run_windows w;
   windows_of_all(s, run, &w);
-#define INTERPOLATE(rows) \
-  if (run->size[1] == (rows)) interpolate_run(rows, s, run, next, &w);
-  OF_ROWS(INTERPOLATE)
-#undef INTERPOLATE
+  BY_ROWS(interpolate_run)
 }
+#undef BY_ROWS
 #undef OF_ROWS
 
 typedef void of_run(const spreading *s, const sd_spread_run *run, const sd_spread_run *next);

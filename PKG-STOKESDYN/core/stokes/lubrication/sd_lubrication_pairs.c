@@ -1,0 +1,96 @@
+/* Who is near whom: the pairs that have a film. */
+#include <math.h>
+#include <string.h>
+
+#include "sd_linear.h"
+#include "sd_lubrication_internal.h"
+#include "sd_room.h"
+
+static sd_status reserve_pairs(sd_lubrication *L, long count)
+{
+  struct sd_lubrication_work *w = L->work;
+  if (count < w->most_pairs) return SD_OK;
+  const size_t room = (size_t) (count + count / 4 + 64);
+  if (!sd_grow(&L->pair, sizeof(*L->pair), room) || !sd_grow(&w->close, sizeof(*w->close), room) ||
+      !sd_grow(&L->link, sizeof(*L->link), room) ||
+      !sd_grow(&L->model, sizeof(double), room))
+    return SD_ENOMEMORY;
+  w->most_pairs = (long) room;
+  return SD_OK;
+}
+
+static sd_status identify(sd_lubrication *L, const sd_lubrication_scene *s)
+{
+  identity *who = L->work->identity;
+  for (int i = 0; i < s->n; i++)
+    who[i] = (identity){s->world.me, i, s->body ? s->body[i] : 0};
+  if (!s->world.refresh) return SD_OK;
+  return s->world.refresh(s->world.ctx, &who->rank, &who[s->n].rank, sizeof(identity) / sizeof(double));
+}
+
+/* The row of the sphere that stands at j: of this rank, or j itself */
+static int row_at(const sd_lubrication *L, int j)
+{
+  const identity *who = L->work->identity + j;
+  return j < L->n || who->rank != L->world.me ? j : (int) who->row;
+}
+
+static int one_body(const sd_lubrication *L, int i, int j)
+{
+  const identity *who = L->work->identity;
+  return who[i].body != 0 && who[i].body == who[j].body;
+}
+
+/* What there is to know of a pair where it stands; d from sphere i to j */
+static closeness film_look(const sd_lubrication_scene *s, int i, int j, double d[3])
+{
+  const sd_spheres *p = &s->spheres;
+  sd_minus(p->x + 3 * (long) j, p->x + 3 * (long) i, d);
+  const double R = sqrt(sd_dot(d, d));
+  if (R > 0.0)
+    for (int e = 0; e < 3; e++) d[e] /= R;
+  else
+    d[2] = 1.0; /* spheres at one point: any direction */
+  return (closeness){R, j};
+}
+
+/* The pair of i and `at`, and of j that stands there, if they feel each other */
+static void keep_pair(sd_lubrication *L, const sd_lubrication_scene *s, long *count, int i, int j,
+                      int at)
+{
+  if (one_body(L, i, at)) return;
+  const closeness close = film_look(s, i, at, L->link[*count].d);
+  if (!(weight_of_film(s, i, &close) > 0.0)) return;
+  L->pair[*count][0] = i;
+  L->pair[*count][1] = j;
+  L->work->close[(*count)++] = close;
+}
+
+/* Pairs of a sphere with its own images are there as often as these are, since the other way round
+ * is the same force on the same sphere. All others are there once, from the lower row. */
+sd_status sd_lubrication_find_pairs(sd_lubrication *L, const sd_lubrication_scene *s)
+{
+  struct sd_lubrication_work *w = L->work;
+  const int beyond = s->world.ranks > 1, rows = beyond ? s->n_all : s->n;
+  sd_status status = identify(L, s);
+  if (status == SD_OK) status = sd_near_once(&w->near, &s->spheres, rows, s->n_all, 2.0 + s->range);
+  if (status == SD_OK) status = reserve_pairs(L, w->near.first[rows]);
+  if (status != SD_OK) return status;
+  L->count = 0;
+  for (int i = 0; i < s->n; i++)
+    for (long k = w->near.first[i]; k < w->near.first[i + 1]; k++) {
+      const int at = w->near.neighbor[k], j = row_at(L, at);
+      if (j >= i) keep_pair(L, s, &L->count, i, j, at);
+    }
+  double *met = w->neighbours;
+  memset(met, 0, sizeof(double) * (size_t) s->n_all);
+  for (long k = 0; k < L->count; k++) met[L->pair[k][1]] = 1.0;
+  long last = L->count;
+  for (int i = s->n; i < rows; i++)
+    for (long k = w->near.first[i]; met[i] != 0.0 && k < w->near.first[i + 1]; k++) {
+      const int j = w->near.neighbor[k];
+      if (met[j] != 0.0) keep_pair(L, s, &last, i, j, j);
+    }
+  L->beyond = last - L->count;
+  return SD_OK;
+}
