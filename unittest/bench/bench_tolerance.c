@@ -5,10 +5,15 @@
  * Volume fractions 0.001 to 0.6, tolerances 1e-2 to 1e-12, radii 1 : 1 to 1 : 100 (slabs 1 : 10), forces alone or with
  * torques. Forces are random and, in the column `equal`, all along x and as large as a^2. Compared with all pairs
  * where the box is open, else with a sum whose tolerance is a fiftieth. U: rms error of velocities over the rms of
- * F/(6 pi a); W: of spins over the rms of T/(8 pi a^3), both times a; flow: rms of velocities over that. */
+ * F/(6 pi a); W: of spins over the rms of T/(8 pi a^3), both times a; flow: rms of velocities over that. In
+ * shells of twelve points each point has a random force of its own. `of spheres`: all twelve have the same, U is the
+ * mean of their velocities, F the sum of their forces and a = 1, and the sum over points is asked for
+ * sd_multiblob_looser times the tolerance. */
 #include "../core/stokes/ewald/periodic.h"
 #include "../core/stokes/slab/slab.h"
 #include "plain.h"
+
+#include "sd_multiblob.h"
 
 typedef enum { EQUAL, ANY, TWO_SIZES, FEW_LARGE, SHELLS, KINDS } kind;
 typedef enum { CUBE, OBLONG, OBLIQUE, OPEN, ABOVE_WALL, LAYER, FLOOR, SLIT, PLACES } place;
@@ -20,7 +25,8 @@ typedef struct {
   kind kind;
   place place;
   double ratio, phi, tolerance;
-  double *x, *a, *w, *F[2], *u, *v;
+  double *x, *a, *w, *F[3], *u, *v;
+  sd_multiblob shell;
   sd_ewald_box box;
 } scene;
 
@@ -37,7 +43,7 @@ static void draw_radii(scene *s, uint64_t *seed)
     s->a[i] = s->kind == ANY     ? log_uniform(seed, 1.0, s->ratio)
         : s->kind == TWO_SIZES   ? (i < share * s->n ? s->ratio : 1.0)
         : s->kind == FEW_LARGE   ? (i < few ? s->ratio : 1.0)
-        : s->kind == SHELLS      ? 0.35
+        : s->kind == SHELLS      ? s->shell.point
                                  : 1.0;
 }
 
@@ -54,27 +60,13 @@ static void draw_box(scene *s, uint64_t *seed)
   for (int d = 0; d < 3 && s->place == OBLIQUE; d++) s->box.tilt[d] = uniform(seed, -0.5, 0.5) * s->box.edge[d > 1];
 }
 
-/* Points of an icosahedron of radius 1 */
-static void add_shell(double *x, const double *centre)
-{
-  const double g = 0.5 * (1.0 + sqrt(5.0)), size = hypot(1.0, g);
-  for (int k = 0; k < 12; k++)
-    for (int d = 0; d < 3; d++) {
-      const int e = (d + k / 4) % 3;
-      x[3 * k + d] = centre[d] + (e == 0 ? 0.0 : e == 1 ? (k & 1 ? 1.0 : -1.0) : (k & 2 ? g : -g)) / size;
-    }
-}
-
 static void draw_places(scene *s, uint64_t *seed)
 {
-  const int together = s->kind == SHELLS ? 12 : 1;
+  const int together = s->kind == SHELLS ? s->shell.n : 1;
   for (int i = 0; i < s->n; i += together) {
     double c[3];
     for (int d = 0; d < 3; d++) c[d] = uniform(seed, 0, 1) * s->box.edge[d];
-    if (together > 1)
-      add_shell(s->x + 3 * i, c);
-    else
-      memcpy(s->x + 3 * i, c, sizeof(c));
+    for (int k = 0; k < 3 * together; k++) s->x[3 * i + k] = c[k % 3] + (together > 1 ? s->shell.r[k] : 0.0);
   }
   /* walls are at 0 and at the edge */
   for (int i = 0; i < s->n && s->place >= ABOVE_WALL; i++) {
@@ -92,9 +84,10 @@ static void draw_forces(scene *s, uint64_t *seed)
     const double a = s->a[i / s->width];
     s->F[0][i] = uniform(seed, -1, 1) * (d < 3 ? a : a * a);
     s->F[1][i] = d == 0 ? a * a : 0.0;
+    s->F[2][i] = s->F[0][i - i / s->width % s->shell.n * s->width]; /* of the first point of its sphere */
   }
   if (s->place == LAYER) /* forces along it add up to 0 */
-    for (int l = 0; l < 2; l++)
+    for (int l = 0; l < 3; l++)
       for (int d = 0; d < 2; d++) {
         double sum = 0.0;
         for (int i = 0; i < s->n; i++) sum += s->F[l][3 * i + d];
@@ -136,9 +129,10 @@ static scene draw(uint64_t *seed, const wish *w)
   s.width = uniform(seed, 0, 1) < 0.4 && s.place < ABOVE_WALL ? 6 : 3;
   if (s.kind != EQUAL && s.kind != SHELLS) s.ratio = log_uniform(seed, 1.1, s.place >= LAYER ? 10.0 : 100.0);
   const size_t n = (size_t) s.n;
-  double **const rows[] = {&s.x, &s.F[0], &s.F[1], &s.u, &s.v};
-  for (int k = 0; k < 5; k++) *rows[k] = malloc(sizeof(double) * 6 * n);
+  double **const rows[] = {&s.x, &s.F[0], &s.F[1], &s.F[2], &s.u, &s.v};
+  for (int k = 0; k < 6; k++) *rows[k] = malloc(sizeof(double) * 6 * n);
   s.a = malloc(sizeof(double) * n), s.w = malloc(sizeof(double) * n);
+  assert_int_equal(sd_multiblob_create(12, 0, &s.shell), SD_OK);
   draw_radii(&s, seed);
   draw_box(&s, seed);
   draw_places(&s, seed);
@@ -148,7 +142,7 @@ static scene draw(uint64_t *seed, const wish *w)
 
 static void scene_release(scene *s)
 {
-  free(s->x), free(s->a), free(s->w), free(s->F[0]), free(s->F[1]), free(s->u), free(s->v);
+  free(s->x), free(s->a), free(s->w), free(s->F[0]), free(s->F[1]), free(s->F[2]), free(s->u), free(s->v);
 }
 
 static sd_slab_walls walls_of(const scene *s)
@@ -237,20 +231,44 @@ static void errors(const scene *s, const double *F, double *error, double *flow)
   *flow = sqrt(moved / bare[0]);
 }
 
+/* u by a sum to this tolerance, and v exactly */
+static void both(scene *s, double tolerance, const double *F)
+{
+  if (s->place == OPEN || s->place == ABOVE_WALL)
+    exact(s, F, s->v);
+  else
+    by_rule(s, fmax(0.02 * s->tolerance, 1e-13), F, s->v);
+  by_rule(s, tolerance, F, s->u);
+}
+
+/* Of the mean velocities of spheres that are shells, over the tolerance */
+static double error_of_spheres(scene *s)
+{
+  const int n = s->shell.n;
+  double off = 0.0, bare = 0.0;
+  both(s, s->tolerance * sd_multiblob_looser(&s->shell), s->F[2]);
+  for (int i = 0; i < s->n; i += n)
+    for (int d = 0; d < 3; d++) {
+      double mean = 0.0;
+      for (int k = i; k < i + n; k++) mean += (s->u[s->width * k + d] - s->v[s->width * k + d]) / n;
+      off += mean * mean;
+      bare += pow(n * s->F[2][s->width * i + d] / (6.0 * SD_PI), 2);
+    }
+  return sqrt(off / bare) / s->tolerance;
+}
+
 static void tell(int number, scene *s)
 {
   double error[2][2], flow[2];
   for (int l = 0; l < 2; l++) {
-    if (s->place == OPEN || s->place == ABOVE_WALL)
-      exact(s, s->F[l], s->v);
-    else
-      by_rule(s, fmax(0.02 * s->tolerance, 1e-13), s->F[l], s->v);
-    by_rule(s, s->tolerance, s->F[l], s->u);
+    both(s, s->tolerance, s->F[l]);
     errors(s, s->F[l], error[l], flow + l);
   }
   printf("%4d %-7s %-9s n %5d w %d ratio %6.2f phi %.4f tol %.1e %s levels %d | ", number, places[s->place],
          kinds[s->kind], s->n, s->width, s->ratio, s->phi, s->tolerance, s->floats ? "floats " : "doubles", s->levels);
-  printf("U %.3f W %.3f | equal %.3f flow %.3g\n", error[0][0], error[0][1], error[1][0], flow[1]);
+  printf("U %.3f W %.3f | equal %.3f flow %.3g", error[0][0], error[0][1], error[1][0], flow[1]);
+  if (s->kind == SHELLS) printf(" | of spheres %.3f", error_of_spheres(s));
+  printf("\n");
   fflush(stdout);
 }
 

@@ -260,6 +260,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   bool split();
   /* of a product, for sd_mobility_how.tolerance; 0: a solve goes on below the rounding of floats */
   double harmless_error() const;
+  /* with which spheres, by their points, have far_field_tolerance */
+  double tolerance_of_sums() const;
   const sd_mobility_engine *engine_of_all();
   void split_slab();
   sd_ewald_sizes sizes_of_all(double largest) const;

@@ -29,6 +29,12 @@ double Scene::harmless_error() const
   return settings.residual < FLOATS_SOLVE_TO || settings.positive > 0.0 ? 0.0 : settings.far_field_tolerance;
 }
 
+/* Noise is drawn for points: there is no mean over those of a sphere. */
+double Scene::tolerance_of_sums() const
+{
+  return settings.far_field_tolerance * (shells && settings.positive == 0.0 ? shells->looser() : 1.0);
+}
+
 sd_ewald_box Scene::lattice_box(const Domain *domain)
 {
   const Lattice lattice = Lattice::of(domain);
@@ -105,7 +111,7 @@ bool Scene::split()
   const sd_wall &wall = settings.boundary.image_wall();
   const double all_pairs =
       sizes.all.count * sizes.all.count * (wall.sign ? SD_PAIR_AT_WALL : 1.0);
-  const double tolerance = settings.far_field_tolerance;
+  const double tolerance = tolerance_of_sums();
   sd_status status;
   if (wall.sign)
     status = sd_ewald_choose_at_wall(&box, &wall, &sizes, tolerance, &ewald);
@@ -114,7 +120,7 @@ bool Scene::split()
         sd_ewald_choose_positive(&box, &sizes, width(), tolerance, settings.positive, &ewald);
   else
     status = sd_ewald_levels_choose(&box, &sizes, width(), tolerance, &ewald, &second_level);
-  if (harmless_error() == 0.0) ewald.single = 0;
+  if (harmless_error() < (1.0 - 1e-9) * SD_EWALD_SINGLE) ewald.single = 0;
   ewald.box = box;
   if (status != SD_OK && must)
     voice.fail("keyword far_field: no grid for Ewald sums of " + text(sizes.all.count) +
@@ -169,7 +175,7 @@ void Scene::split_slab()
   sd_ewald_box box = lattice_box(domain);
   box.periodic = 1;
   const sd_status status = sd_slab_choose(&walls, &box, -bounds[2], bounds[3], smallest, &sizes,
-                                          settings.far_field_tolerance, &slab);
+                                          tolerance_of_sums(), &slab);
   ewald = slab.ewald;
   second_level = {};
   if (status != SD_OK)
@@ -207,7 +213,7 @@ void Scene::tell()
   if (second_level.from > 0.0)
     now += "; " + text(second_level.count) + " spheres of radius " + text(second_level.from) +
         " and more on a second level: " + parameters_of(second_level.split);
-  now += "; far_field_tolerance " + text(e.tolerance) + (e.single ? ", in single precision\n" : "\n");
+  now += "; far_field_tolerance " + text(settings.far_field_tolerance) + (e.single ? ", in single precision\n" : "\n");
   if (now != said && comm->me == 0) utils::logmesg(lmp, now);
   said = now;
 }

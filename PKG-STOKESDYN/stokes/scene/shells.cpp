@@ -3,6 +3,7 @@
 #include "keywords.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -97,6 +98,13 @@ int Shells::kind(double a) const
         above(a, larger.from * classes.smallest))
       kind++;
   return kind;
+}
+
+double Shells::looser() const
+{
+  double least = INFINITY;
+  for (const sd_multiblob &model : models) least = std::min(least, sd_multiblob_looser(&model));
+  return least;
 }
 
 void Shells::find(int n, const double *a, Places &places) const

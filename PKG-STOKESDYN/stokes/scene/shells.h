@@ -75,6 +75,8 @@ class Shells : protected LAMMPS_NS::Pointers {
   /* How far points reach from the centre of a sphere, and their radius */
   double extent(double a) const { return model_of(a).radius * a; }
   double grain(double a) const { return model_of(a).point * a; }
+  /* By how much sums over all points may be less accurate than those over spheres: the least of all shells */
+  double looser() const;
 
   // --- the rows of this rank, and where their points begin
 

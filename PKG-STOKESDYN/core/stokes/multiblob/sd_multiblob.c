@@ -1,5 +1,6 @@
 #include "sd_multiblob.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -131,6 +132,11 @@ sd_status sd_multiblob_create(int n, int one_body, sd_multiblob *m)
   status = resistance_of_lone(m, R);
   if (status == SD_OK) find_addition(R, m);
   return status;
+}
+
+double sd_multiblob_looser(const sd_multiblob *m)
+{
+  return sqrt((double) m->n) * m->point;
 }
 
 /* --- the addition ----------------------------------------------------------------------------- */

@@ -62,6 +62,18 @@ sd_status sd_multiblob_create(int n, int one_body, sd_multiblob *out);
 /* A half shell (sd_multiblob_half.h). SD_OK; SD_EOUTSIDE: another n than 42, 162 and 642. */
 sd_status sd_multiblob_create_half(int n, int one_body, sd_multiblob *out);
 
+/* By how much the error of a sum over points may be larger than that which is wanted of spheres, each over
+ * the rms of F/(6 pi eta a) of its own: sqrt(n) b, which is 1.95 for 12 points.
+ *
+ * Of N spheres let the sum mistake the velocity of a point q by E_pq f_q where p pushes. It is within the
+ * tolerance t of points: n N <E^2> = t^2/(6 pi eta a b)^2 (the mean over all pairs of points). A sphere with
+ * the force F has F/n on each point and moves with the mean of its points, so that what J makes I mistake is
+ * F_J times the mean of E over their n^2 pairs, whose square is at most the mean of E^2. The error of the
+ * spheres over the rms of F/(6 pi eta a) is thus at most sqrt(N <E^2>) 6 pi eta a = t/(sqrt(n) b).
+ * E differs from point to point, and so the means are smaller: a fifth to a half of this was measured, with
+ * what points bear besides F/n. */
+double sd_multiblob_looser(const sd_multiblob *m);
+
 /* Rotation of the points of a free sphere from the axes of sd_shell.h, those of its mirrors: row-major */
 void sd_multiblob_axes(double turn[9]);
 

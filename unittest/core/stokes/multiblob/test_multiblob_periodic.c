@@ -278,6 +278,48 @@ static void positive_in_crystals_and_groups(void **state)
   }
 }
 
+/* Mean velocities [3 n] of the points of each sphere, whose forces [3 n] are spread over them, by a sum to this
+ * tolerance of points */
+static void mean_velocities(const blobs *s, double side, double of_points, const double *F, double *U)
+{
+  const sd_ewald_box box = {.periodic = 1, .edge = {side, side, side}};
+  const int points = s->m.n, own = 3 * points;
+  const sd_ewald split = periodic_choose(&box, s->b, points * s->n, 3, of_points);
+  double *f = malloc(sizeof(double) * (size_t) s->N), *u = malloc(sizeof(double) * (size_t) s->N);
+  periodic p;
+  periodic_place(&p, s->at, s->b, NULL, points * s->n, 3, &split);
+  for (int k = 0; k < s->N; k++) f[k] = F[3 * (k / own) + k % 3] / points;
+  periodic_apply(&p, f, u);
+  memset(U, 0, sizeof(double) * 3 * (size_t) s->n);
+  for (int k = 0; k < s->N; k++) U[3 * (k / own) + k % 3] += u[k] / points;
+  periodic_free(&p);
+  free(f), free(u);
+}
+
+/* Velocities of spheres keep the tolerance where the sum over their points is asked for sd_multiblob_looser times as
+ * much. The errors of points average out, so that most of it is left. */
+static void spheres_keep_the_tolerance(void **state)
+{
+  (void) state;
+  double x[3 * BLOBS_MOST], F[3 * BLOBS_MOST], U[3 * BLOBS_MOST], exact[3 * BLOBS_MOST], side = 0.0;
+  const int n = positions_of("0.45", x, &side);
+  uint64_t seed = 5;
+  for (int points = 12; points <= 42; points += 30) {
+    blobs *s = blobs_create(points, 1, n, x, NULL);
+    blobs_expand(s);
+    for (int k = 0; k < 3 * n; k++) F[k] = uniform(&seed, -1, 1);
+    mean_velocities(s, side, 1e-9, F, exact);
+    for (double asked = 1e-2; asked > 1e-7; asked *= 0.2) {
+      double off = 0.0, all = 0.0;
+      mean_velocities(s, side, asked * sd_multiblob_looser(&s->m), F, U);
+      for (int k = 0; k < 3 * n; k++) off += pow(U[k] - exact[k], 2), all += pow(F[k] / (6.0 * SD_PI), 2);
+      print_message("%d points, asked for %.1e: %.2f of it\n", points, asked, sqrt(off / all) / asked);
+      assert_true(sqrt(off / all) < 0.3 * asked);
+    }
+    blobs_free(s);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -286,6 +328,7 @@ int main(void)
       cmocka_unit_test(dense_boxes),
       cmocka_unit_test(two_radii),
       cmocka_unit_test(positive_in_crystals_and_groups),
+      cmocka_unit_test(spheres_keep_the_tolerance),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
