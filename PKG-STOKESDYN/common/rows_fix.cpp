@@ -5,6 +5,8 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <new>
 
 using namespace LAMMPS_NS;
@@ -161,10 +163,10 @@ bool RowsFix::within_run() const
   return update->whichflag == 1;
 }
 
-/* All atoms take as much as the longest, so that the file tells whether it is of this kind. */
+/* Size, atom ID, rows. All atoms take as much as the longest, so that the file tells whether it is of this kind. */
 int RowsFix::maxsize_restart()
 {
-  int size = 1;
+  int size = 2;
   for (size_t k = 0; k < in_files; k++) size += kept[k]->most_packed();
   return size;
 }
@@ -172,19 +174,32 @@ int RowsFix::maxsize_restart()
 int RowsFix::pack_restart(int i, double *buf)
 {
   if (within_run()) record(i);
+  const int64_t id = atom->tag[i];
   buf[0] = maxsize_restart();
-  for (size_t k = 0, m = 1; k < in_files; k++) m += kept[k]->pack(i, buf + m);
+  memcpy(buf + 1, &id, sizeof(id));
+  for (size_t k = 0, m = 2; k < in_files; k++) m += kept[k]->pack(i, buf + m);
   return maxsize_restart();
 }
 
+/* LAMMPS's delete_atoms moves atoms, and leaves what the file says of them where it was. */
 void RowsFix::unpack_restart(int i, int nth)
 {
-  double *extra = atom->extra[i];
-  int m = 0;
-  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
-  if (!restored() || static_cast<int>(extra[m]) != maxsize_restart()) return set_arrays(i);
-  m++;
-  for (size_t k = 0; k < in_files; k++) m += kept[k]->unpack(i, extra + m);
+  const double *row = atom->extra[i];
+  for (int k = 0; k < nth; k++) row += static_cast<int>(*row);
+  const int size = static_cast<int>(*row), whole = maxsize_restart();
+  const bool without_id = size == whole - 1;    // of a former version
+  if (!restored() || (size != whole && !without_id)) return set_arrays(i);
+  int64_t id = atom->tag[i];
+  if (!without_id) memcpy(&id, row + 1, sizeof(id));
+  if (id != atom->tag[i]) return another_in_file(i);
+  row += without_id ? 1 : 2;
+  for (size_t k = 0; k < in_files; k++) row += kept[k]->unpack(i, row);
+}
+
+void RowsFix::another_in_file(int i)
+{
+  voice.fail_one("atom " + std::to_string(atom->tag[i]) + " stands where the restart file has another one: give "
+                 "this fix before delete_atoms");
 }
 
 void RowsFix::write_restart(FILE *fp)

@@ -141,6 +141,9 @@ class RowsFix : public LAMMPS_NS::Fix {
   bool within_run() const;
   /* Do the rows of a restart file stand? */
   virtual bool restored() const { return true; }
+  /* Atom i is not the one that the restart file has in its place: atoms were deleted between read_restart and
+   * this fix. An error; internal fixes, which nobody can give before, begin anew. */
+  virtual void another_in_file(int i);
   /* What else restart files hold: numbers, and whatever these two add before and after. The numbers are
    * in their places when read_state() is called, and asked for after write_state(); on all ranks together. */
   virtual std::vector<SavedNumbers> saved() { return {}; }

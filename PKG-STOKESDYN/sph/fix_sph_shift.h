@@ -33,6 +33,7 @@ class FixSphShift : public RowsFix {
 
  protected:
   bool restored() const override { return filled(); }
+  void another_in_file(int i) override { set_arrays(i); }
   std::vector<SavedNumbers> saved() override { return {{"filled", &has_rows}}; }
 
  private:

@@ -132,6 +132,7 @@ class FixStokesDynamicsState : public RowsFix {
   void read_state(const NamedState &) override;
   /* Rows of another length: the pair style has been given with or without rotation since. */
   bool restored() const override { return global.last_step >= 0; }
+  void another_in_file(int i) override { set_arrays(i); }
   void present_box(double *box) const;
 };
 

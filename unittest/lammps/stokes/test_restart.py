@@ -140,6 +140,25 @@ def test_what_has_changed_since_the_run_is_seen_in_the_file_too(simulation, tmp_
     assert np.abs(there - here).max() < LIMIT
 
 
+def test_atoms_deleted_behind_a_restart_file_leave_the_others_their_rows(simulation, tmp_path):
+    """How a clump has turned is in the file alone. LAMMPS does not move it with the atoms that take the places of those
+    deleted, until a fix has it."""
+    clumps = Spheres([(2 * k, y, 0) for y in (-9, 0, 9) for k in range(3)], molecule=np.repeat([1, 2, 3], 3))
+    fix = ["group head id 1 4 7", "variable T atom 30*(id<4)-90*(id>6)", "timestep 0.5",
+           "fix move all stokes_dynamics/overdamped torque head 10 0 v_T body yes"]
+    gone = ["group gone id 1 2 3", "delete_atoms group gone compress no"]
+    read = ["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/mid"]
+    sim = simulation(clumps, "cut_off_distance inf visc 1 rotation yes rigid_clumps yes", box=BOX, fix=False)
+    sim.commands(fix).run(10).commands([f"write_restart {tmp_path}/mid", *gone]).run(4)
+    here = np.hstack([sim.x, sim.fix_rows("move")[:, 9:13]])
+    sim = simulation().commands(read + fix + gone).run(4)
+    there = np.hstack([sim.x, sim.fix_rows("move")[:, 9:13]])
+    assert np.abs(there - here).max() < 1e-3 and np.abs(here[0] - here[3])[3:].max() > 0.1
+    with pytest.raises(LammpsError, match="atom [789] stands where the restart file has another one: give this fix "
+                                          "before delete_atoms"):
+        simulation().commands(read + gone + fix)
+
+
 @pytest.mark.parametrize("restart", [False, True])
 @pytest.mark.parametrize("warm", ["no", "yes"])
 def test_a_run_goes_on_with_algorithm_2_though_algorithm_1_would_converge_by_now(simulation, tmp_path, warm, restart):
