@@ -180,6 +180,9 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair> {
   std::vector<LAMMPS_NS::Fix *> of_ours(std::vector<LAMMPS_NS::Fix *> fixes) const;
   void find_integrators();
   void remember_members();
+  void check_shift(bool volume, bool planes) const;
+  void check_grains(bool volume) const;
+  void check_implicit() const;
   void choose_scheme();
   void check_stiffness();
   void check_groups();

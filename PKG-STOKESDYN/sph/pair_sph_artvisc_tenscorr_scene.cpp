@@ -136,13 +136,10 @@ void PairSph::find_integrators()
   }
 }
 
-/* What the options make of rate and force, and what does not go with them. */
-void PairSph::choose_scheme()
+/* What shift, correction and volume yes need, and what they do not go with; planes: there are walls without
+ * particles */
+void PairSph::check_shift(bool volume, bool planes) const
 {
-  model.delta = continuity && leapfrog ? continuity->delta : 0.0;
-  whole = fixes_of(lmp, FixSphTension::STYLE).empty() ? 0.0 : SD_SPH_WHOLE;
-  const bool volume = continuity && continuity->volume,
-             planes = !fixes_of(lmp, "wall/sph").empty() || !fixes_of(lmp, "wall/region/sph").empty();
   const char *what = corrects ? "correction yes " : pliant ? "shift pliant " : "shift yes ";
   auto refuse = [&](bool when, const std::string &why) {
     if (when) voice.fail(what + why);
@@ -164,27 +161,51 @@ void PairSph::choose_scheme()
   if (volume && (!leapfrog || model.tenscorr))
     voice.fail("volume yes of fix sph/density/continuity needs fix nve/sph, and does not go with "
                "tensCorr");
-  model.scheme = volume && corrects ? SD_SPH_VOLUME_CORRECTION
-      : volume && shifts ? SD_SPH_VOLUME_SHIFT
-      : volume          ? SD_SPH_VOLUME
-      : corrects        ? SD_SPH_CORRECTION
-      : pliant            ? SD_SPH_SHIFT_PLIANT
-      : shifts          ? SD_SPH_SHIFT
-                        : SD_SPH_PLAIN;
-  if (grains && !leapfrog)
+}
+
+/* The same of fix sph/grains */
+void PairSph::check_grains(bool volume) const
+{
+  if (!grains) return;
+  if (!leapfrog)
     grains->voice.fail("needs fix sph/density/continuity and fix nve/sph");
-  if (grains && !volume)
+  if (!volume)
     grains->voice.fail("needs volume yes of fix sph/density/continuity, whose sums go by the volume of a particle: "
                        "that of water between grains is not its mass over a density");
-  if (grains && (corrects || filter))
+  if (corrects || filter)
     grains->voice.fail(corrects ? "does not go with correction yes of pair_style sph/artVisc/tensCorr, which knows one "
                                   "volume of a particle: use shift yes"
                                 : "does not go with fix sph/density/corr, which would smear water into the grains: "
                                   "use delta of fix sph/density/continuity");
-  if (implicit && (integrators.empty() || !fixes_of(lmp, "sph").empty()))
+}
+
+/* And of the keyword implicit */
+void PairSph::check_implicit() const
+{
+  if (!implicit) return;
+  if (integrators.empty() || !fixes_of(lmp, "sph").empty())
     voice.fail("keyword implicit needs fix nve/sph, whose step it knows");
-  if (implicit && grains)
+  if (grains)
     grains->voice.fail("does not go with keyword implicit of pair_style sph/artVisc/tensCorr");
+}
+
+/* What the options make of rate and force */
+void PairSph::choose_scheme()
+{
+  model.delta = continuity && leapfrog ? continuity->delta : 0.0;
+  whole = fixes_of(lmp, FixSphTension::STYLE).empty() ? 0.0 : SD_SPH_WHOLE;
+  const bool volume = continuity && continuity->volume,
+             planes = !fixes_of(lmp, "wall/sph").empty() || !fixes_of(lmp, "wall/region/sph").empty();
+  check_shift(volume, planes);
+  check_grains(volume);
+  check_implicit();
+  model.scheme = volume && corrects ? SD_SPH_VOLUME_CORRECTION
+      : volume && shifts ? SD_SPH_VOLUME_SHIFT
+      : volume           ? SD_SPH_VOLUME
+      : corrects         ? SD_SPH_CORRECTION
+      : pliant           ? SD_SPH_SHIFT_PLIANT
+      : shifts           ? SD_SPH_SHIFT
+                         : SD_SPH_PLAIN;
   full = corrects || (shifts && !volume && !planes && background() > 0.0);
   friction_fix.take_away();
   if (implicit) friction_fix.make();

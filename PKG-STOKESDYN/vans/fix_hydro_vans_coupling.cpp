@@ -82,18 +82,38 @@ uint64_t FixHydroVans::members() const
   return all;
 }
 
-/* The share of each member of a clump in the volume of the union. Once for every set of members:
- * clumps are rigid. Seen from each member the others stand at their nearest image: what overlaps it
- * is near. */
+namespace {
+struct Member {
+  tagint molecule, tag;
+  double x[3], a;
+};
+}    // namespace
+
+/* The share of each of the members [n] of a clump in the volume of their union, by tag. Seen from each
+ * the others stand at their nearest image: what overlaps it is near. */
+static void add_shares(const Voice &voice, const Domain *domain, const Member *clump, size_t n,
+                       std::map<tagint, double> &share)
+{
+  std::vector<double> x(3 * n), a(n);
+  for (size_t k = 0; k < n; k++) {
+    for (size_t j = 0; j < n; j++) {
+      for (int d = 0; d < 3; d++) x[3 * j + d] = clump[j].x[d] - clump[k].x[d];
+      sd_closest_image(domain->h, domain->periodicity, &x[3 * j]);
+      a[j] = clump[j].a;
+    }
+    const double part = sd_vans_union_share((int) n, x.data(), a.data(), (int) k);
+    if (part < 0.0)
+      voice.fail_one("keyword overlap: out of memory for a clump of " + std::to_string(n) + " members");
+    share[clump[k].tag] = part;
+  }
+}
+
+/* What each member of a clump loses to others. Once for every set of members: clumps are rigid. */
 void FixHydroVans::count_overlaps()
 {
   const uint64_t now = members();
   if (now == members_counted) return;
   members_counted = now;
-  struct Member {
-    tagint molecule, tag;
-    double x[3], a;
-  };
   std::vector<Member> mine;
   for (int i = 0; i < atom->nlocal; i++) {
     const double *x = atom->x[i];
@@ -106,24 +126,9 @@ void FixHydroVans::count_overlaps()
     return p.molecule != q.molecule ? p.molecule < q.molecule : p.tag < q.tag;
   });
   std::map<tagint, double> share;
-  std::vector<double> x, a;
   for (size_t begin = 0, end; begin < all.size(); begin = end) {
     for (end = begin; end < all.size() && all[end].molecule == all[begin].molecule; end++) {}
-    const size_t n = end - begin;
-    x.resize(3 * n);
-    a.resize(n);
-    for (size_t k = 0; k < n; k++) {
-      for (size_t j = 0; j < n; j++) {
-        for (int d = 0; d < 3; d++) x[3 * j + d] = all[begin + j].x[d] - all[begin + k].x[d];
-        sd_closest_image(domain->h, domain->periodicity, &x[3 * j]);
-        a[j] = all[begin + j].a;
-      }
-      const double part = sd_vans_union_share((int) n, x.data(), a.data(), (int) k);
-      if (part < 0.0)
-        set.voice.fail_one("keyword overlap: out of memory for a clump of " + std::to_string(n) +
-                       " members");
-      share[all[begin + k].tag] = part;
-    }
+    add_shares(set.voice, domain, &all[begin], end - begin, share);
   }
   for (int i = 0; i < atom->nlocal; i++) {
     const auto at = share.find(atom->tag[i]);

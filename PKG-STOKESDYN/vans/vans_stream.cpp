@@ -267,33 +267,53 @@ void VansStream::exchange(double T, double dt, bool held, std::vector<double> &r
   if (!rest.empty()) std::fill(rest.begin() + wet.ncell, rest.end(), 0.0);
 }
 
+/* What the drag foreseen in the last solve was more than the true one goes back to the water, as a source
+ * over the time T. Returns how much. */
+double VansStream::give_back(double area, double T, const Given &given, std::vector<double> &source)
+{
+  std::vector<double> back = given.back;
+  source.resize(ncell());
+  fold_above(back);
+  fold_above(outstanding);
+  return sd_vans_give_back(&wet, fluid.rho * area, T, back.data(), outstanding.data(), source.data());
+}
+
+/* What passed in a solve, into the ledger; without the part of `rest`, which is no momentum of grains */
+void VansStream::keep_books(double area, double T, const Given &given, const std::vector<double> &rest,
+                            sd_vans_books &books)
+{
+  for (size_t n = 0; n + 1 < std::min(rest.size(), (size_t) wet.ncell); n++)
+    books.moved[n] -= fluid.rho * sd_vans_height(&wet, (int) n) * T * rest[n];
+  double &taken = given.back.empty() ? ledger.others : ledger.transit;
+  for (int n = 0; n < ncell(); n++) taken += area * books.moved[n];
+  if (!given.back.empty()) {
+    std::fill(shear_density.begin(), shear_density.end(), 0.0);
+    std::fill(foreseen_density.begin(), foreseen_density.end(), 0.0);
+    sd_vans_hand_over(&wet, phi(), T, &books, shear_density.data(), foreseen_density.data());
+  }
+  ledger.others += given.others;
+  ledger.driving += area * books.driving;
+  ledger.bottom += area * books.bottom;
+  ledger.walls += area * books.walls;
+  ledger.surface += area * books.surface;
+}
+
 void VansStream::solve(double area, double T, double dt, const Given &given)
 {
-  const int N = ncell();
   const int64_t steps = sd_vans_steps(fluid.rules, T, &dt);
-  std::vector<double> rest;
+  std::vector<double> rest, source, moved(ncell()), shear(ncell());
   if (!fluid.held) drive = sd_vans_drive(&fluid);
   exchange(T, dt, given.held, rest);
   mixing_length();
 
-  const bool settle = !given.back.empty();
-  std::vector<double> source(settle ? N : 0), moved(N), shear(N);
-  double returned = 0.0;
-  if (settle) {
-    std::vector<double> back = given.back;
-    fold_above(back);
-    fold_above(outstanding);
-    returned = sd_vans_give_back(&wet, fluid.rho * area, T, back.data(), outstanding.data(),
-                                 source.data());
-  }
+  const double returned = given.back.empty() ? 0.0 : give_back(area, T, given, source);
   source.resize(std::max(source.size(), rest.size()));
   for (size_t n = 0; n < rest.size(); n++) source[n] += rest[n];
-  const sd_vans_column column = {phi(), row(SD_VANS_VX), b.data(), length.data(),
-                                 source.empty() ? nullptr : source.data()};
+  const sd_vans_column water = {phi(), row(SD_VANS_VX), b.data(), length.data(),
+                                source.empty() ? nullptr : source.data()};
   const sd_vans_flow flow = {U.data(), nut.data(), stress.data()};
   sd_vans_books books = {moved.data(), shear.data(), 0, 0, 0, 0, 0};
-  const sd_status status =
-      sd_vans_solve(solver.get(), &fluid, &column, steps, dt, &flow, &books);
+  const sd_status status = sd_vans_solve(solver.get(), &fluid, &water, steps, dt, &flow, &books);
   if (status != SD_OK)
     set.voice.fail("the solve of the stream over " + text(T) + " in " + std::to_string(steps) +
                    " steps: " + sd_status_string(status) +
@@ -304,21 +324,8 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
   drive = books.drive;
   mean_drive = books.driving / (fluid.rho * T * sd_vans_volume(&wet, phi()));
   if (fluid.held) fluid.gx = drive;    // for what else asks how strong the stream is
-  for (size_t n = 0; n + 1 < std::min(rest.size(), (size_t) wet.ncell); n++)
-    moved[n] -= fluid.rho * sd_vans_height(&wet, (int) n) * T * rest[n];
-  double &taken = settle ? ledger.transit : ledger.others;
-  for (int n = 0; n < N; n++) taken += area * moved[n];
-  if (settle) {
-    std::fill(shear_density.begin(), shear_density.end(), 0.0);
-    std::fill(foreseen_density.begin(), foreseen_density.end(), 0.0);
-    sd_vans_hand_over(&wet, phi(), T, &books, shear_density.data(), foreseen_density.data());
-  }
+  keep_books(area, T, given, rest, books);
   ledger.transit -= given.all + returned;
-  ledger.others += given.others;
-  ledger.driving += area * books.driving;
-  ledger.bottom += area * books.bottom;
-  ledger.walls += area * books.walls;
-  ledger.surface += area * books.surface;
 }
 
 std::vector<double> VansStream::lagrangian_times(const std::vector<double> &u_star) const

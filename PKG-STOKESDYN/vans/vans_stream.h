@@ -140,6 +140,9 @@ class VansStream {
   void fold_above(std::vector<double> &of_slices) const;
   void mixing_length();
   void exchange(double T, double dt, bool held, std::vector<double> &rest);
+  double give_back(double area, double T, const Given &given, std::vector<double> &source);
+  void keep_books(double area, double T, const Given &given, const std::vector<double> &rest,
+                  sd_vans_books &books);
   void tell_limits(double T, double dt, bool held, const double cut[2]);
   [[noreturn]] void no_average(int n, double area);
   void check_mesh(const NamedState &state) const;

@@ -2,6 +2,7 @@
 #include "sd_vans.h"
 
 #include <math.h>
+#include <stddef.h>
 
 /* Volume and surface of all grains in slice n over the volume of the slice: phi_c/V_c grains of
  * class c. For one class the ratio is the same whatever their number. */
@@ -89,6 +90,20 @@ static void rousseau(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const
   }
 }
 
+/* kappa times the way down from a node until it is longer than the eddies that fit there */
+static void down_to_pores(const sd_vans_mesh *mesh, double kappa, const double *pore, double *length)
+{
+  const double *z = mesh->edge;
+  for (int j = 0; j < mesh->ncell; j++) {
+    double limit = 0.5 * pore[j], value = 0.0;
+    for (int m = j - 1; m > 0 && limit > value; m--) {
+      limit = 0.5 * pore[m];
+      value = kappa * (z[j] - z[m]);
+    }
+    length[j] = value;
+  }
+}
+
 static void unlimited_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
                              const double *phi, const double *classes,
                              const double *phi_bed_profile, double *length, double *scratch)
@@ -115,16 +130,8 @@ static void unlimited_length(const sd_vans_mesh *mesh, const sd_vans_fluid *flui
       for (int j = 0; j < N; j++) length[j] = fmin(length[j], kappa * (H - z[j]));
       break;
     case SD_VANS_PORE:
-      pore_length(mesh, fluid, phi, classes, pore, 0);
-      for (int j = 0; j < N; j++) {
-        /* down from the node until kappa (z_j - z_m) is longer than the eddies that fit there */
-        double limit = 0.5 * pore[j], value = 0.0;
-        for (int m = j - 1; m > 0 && limit > value; m--) {
-          limit = 0.5 * pore[m];
-          value = kappa * (z[j] - z[m]);
-        }
-        length[j] = value;
-      }
+      pore_length(mesh, fluid, phi, classes, pore, NULL);
+      down_to_pores(mesh, kappa, pore, length);
       break;
     case SD_VANS_ROUSSEAU:
       rousseau(mesh, fluid, U, phi, length);

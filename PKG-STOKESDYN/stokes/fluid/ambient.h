@@ -197,6 +197,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
   };
 
   class Carrier;
+  void grid_at(const std::vector<double> &x, std::vector<double> &out) const;
   std::vector<double> formulas_at(const std::vector<double> &x);
   bool group_stands() const;
   void fill_group();

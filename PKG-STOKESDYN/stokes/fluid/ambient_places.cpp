@@ -58,8 +58,31 @@ class Ambient::Carrier {
   bool lent = false, made = false;
 };
 
+/* The largest velocities that atoms have at one place, and the smallest with a minus sign: they are the same
+ * unless a velocity is that of an atom and not of a place. */
+struct AtOnePlace {
+  double most[6] = {-INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY};
+
+  void note(int d, double v)
+  {
+    most[d] = std::max(most[d], v);
+    most[3 + d] = std::max(most[3 + d], -v);
+  }
+  /* On all ranks together */
+  void require_one(const Voice &voice)
+  {
+    MPI_Allreduce(MPI_IN_PLACE, most, 6, MPI_DOUBLE, MPI_MAX, voice.lmp->world);
+    for (int d = 0; d < 3; d++)
+      if (most[d] + most[3 + d] > 1e-12 * std::fabs(most[d]))
+        voice.fail("keyword fluid_velocity: step " + std::to_string(voice.lmp->update->ntimestep) +
+                   ": the velocity belongs to atoms (" + text(-most[3 + d]) + " to " + text(most[d]) +
+                   " at one place), so that it is not known between them; use formulas in x, y, z, or "
+                   "grid FILE, or box");
+  }
+};
+
 /* As many places at a time as there are atoms on all ranks. In the first round all atoms are at the
- * first place: a velocity that still differs among them is not that of a place. */
+ * first place. */
 std::vector<double> Ambient::formulas_at(const std::vector<double> &mine)
 {
   const Carrier carrier(atom, world, those, groupbit);
@@ -76,8 +99,7 @@ std::vector<double> Ambient::formulas_at(const std::vector<double> &mine)
   std::vector<double> u(x.size() + 1, 0.0), value(atom->nlocal + 1);
   const size_t places = x.size() / 3;
   const Places kept(atom);
-  double extremes[6];
-  std::fill_n(extremes, 6, -INFINITY);
+  AtOnePlace first;
   modify->clearstep_compute();
   for (size_t round = 0; at_once > 0 && places > 0 && round <= (places - 1) / at_once + 1; round++) {
     const auto place_of = [&](size_t k) {
@@ -90,22 +112,15 @@ std::vector<double> Ambient::formulas_at(const std::vector<double> &mine)
       settings.velocity[d].evaluate(lmp, igroup, value.data(), 1);
       for (size_t k = 0; k < those.size(); k++) {
         const double v = value[those[k]];
-        if (round == 0) {
-          extremes[d] = std::max(extremes[d], v);
-          extremes[3 + d] = std::max(extremes[3 + d], -v);
-        } else if ((round - 1) * at_once + before + k < places)
+        if (round == 0)
+          first.note(d, v);
+        else if ((round - 1) * at_once + before + k < places)
           u[3 * place_of(k) + d] = v;
       }
     }
   }
   modify->addstep_compute(update->ntimestep + 1);
-  MPI_Allreduce(MPI_IN_PLACE, extremes, 6, MPI_DOUBLE, MPI_MAX, world);
-  for (int d = 0; d < 3; d++)
-    if (extremes[d] + extremes[3 + d] > 1e-12 * std::fabs(extremes[d]))
-      voice.fail("keyword fluid_velocity: step " + std::to_string(update->ntimestep) +
-                 ": the velocity belongs to atoms (" + text(-extremes[3 + d]) + " to " +
-                 text(extremes[d]) + " at one place), so that it is not known between them; use "
-                 "formulas in x, y, z, or grid FILE, or box");
+  first.require_one(voice);
   MPI_Allreduce(MPI_IN_PLACE, u.data(), mpi_count((double) x.size()), MPI_DOUBLE, MPI_SUM, world);
   return std::vector<double>(u.begin() + begin_of_mine, u.begin() + begin_of_mine + mine.size());
 }
@@ -122,12 +137,18 @@ std::vector<double> Ambient::at_places(const std::vector<double> &x)
     for (size_t k = 0; k < 3 * n; k++)
       if (settings.velocity[k % 3].is_atom_style()) out[k] = formulas[k];
   }
-  if (!settings.grid) return out;
+  if (settings.grid) grid_at(x, out);
+  return out;
+}
+
+/* The same of the grid. Error: a place that is outside of it */
+void Ambient::grid_at(const std::vector<double> &x, std::vector<double> &out) const
+{
   const sd_flow_grid &grid = settings.grid->grid;
   sd_flow_frame frame;
   sd_flow_grid_frame(&grid, now, &frame);    // read() has looked at the time
   double wrong[4] = {0.0, 0.0, 0.0, 0.0};
-  for (size_t k = 0; k < n; k++) {
+  for (size_t k = 0; k < x.size() / 3; k++) {
     double place[3] = {x[3 * k], x[3 * k + 1], x[3 * k + 2]}, value[4];
     domain->remap(place);
     sd_flow_grid_at(&grid, &frame, 1, place, value, nullptr);
@@ -141,7 +162,6 @@ std::vector<double> Ambient::at_places(const std::vector<double> &x)
     if (there[0] > 0.0)
       voice.fail("keyword fluid_velocity: step " + std::to_string(update->ntimestep) +
                  ": a point of fix stokes_dynamics/field: " + outside_of_grid(&there[1]));
-  return out;
 }
 
 /* All that read_fluid() finds */

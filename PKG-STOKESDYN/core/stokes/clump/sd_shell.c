@@ -219,56 +219,68 @@ static sd_status even_points(int n, double *out)
 
 /* --- calibration ------------------------------------------------------------------------------ */
 
+/* The three mirror planes leave the shell as it is, so forces need solving in one octant only: the image
+ * of a point under the sign changes s carries chi(s) s F, with chi = s_x for translation along x, s_x s_y
+ * for rotation about z. Components that change sign under a mirror plane on which the point itself lies
+ * are zero.
+ * How many points the planes make of p; zero [3]: which components of its force they take away */
+static int images_of(const double p[3], int rotation, int zero[3])
+{
+  int count = 1;
+  for (int d = 0; d < 3; d++) count *= p[d] == 0.0 ? 1 : 2;
+  for (int c = 0; c < 3; c++) {
+    zero[c] = 0;
+    for (int d = 0; d < 3; d++) {
+      const double chi = (d == 0 || (rotation && d == 1)) ? -1.0 : 1.0;
+      if (p[d] == 0.0 && chi * (c == d ? -1.0 : 1.0) < 0.0) zero[c] = 1;
+    }
+  }
+  return count;
+}
+
+/* block [9] out: velocity at p from the force at q, with those at the images of q */
+static void add_up_images(const double p[3], const double q[3], double kappa, int rotation, double block[9])
+{
+  for (int e = 0; e < 9; e++) block[e] = 0.0;
+  for (int s = 0; s < 8; s++) {
+    double sign[3], r[3], M[9];
+    int image = 1;
+    for (int d = 0; d < 3; d++) {
+      sign[d] = (s >> d & 1) ? -1.0 : 1.0;
+      if (sign[d] < 0.0 && q[d] == 0.0) image = 0;
+      r[d] = p[d] - sign[d] * q[d];
+    }
+    if (!image) continue;
+    const double chi = rotation ? sign[0] * sign[1] : sign[0];
+    sd_tensor_uf(SD_TENSOR_RPY, r, kappa, kappa, 1.0, M);
+    for (int e = 0; e < 9; e++) block[e] += chi * sign[e % 3] * M[e];
+  }
+}
+
 /* Resistance of a shell of radius 1 with points of radius kappa, eta = 1: translation along x, or
  * rotation about z.
- *
- * The three mirror planes leave the shell as it is, so forces need solving in one octant only: the
- * image of a point under the sign changes s carries chi(s) s F, with chi = s_x for translation
- * along x, s_x s_y for rotation about z. Components that change sign under a mirror plane on which
- * the point itself lies are zero.
- * octant [3m]: points with x, y, z >= 0; A [9 m m], b [3m]: scratch. */
+ * octant [3m]: points with x, y, z >= 0; A [9 m m], b [6 m]: scratch */
 static sd_status shell_resistance(const double *octant, int m, double kappa, int rotation,
                                   double *A, double *b, double *resistance)
 {
   const int n = 3 * m;
   for (int i = 0; i < m; i++) {
     const double *p = octant + 3 * i;
-    int size = 1, zero[3];
-    for (int d = 0; d < 3; d++) size *= p[d] == 0.0 ? 1 : 2;
-    for (int c = 0; c < 3; c++) {
-      zero[c] = 0;
-      for (int d = 0; d < 3; d++) {
-        const double chi = (d == 0 || (rotation && d == 1)) ? -1.0 : 1.0;
-        if (p[d] == 0.0 && chi * (c == d ? -1.0 : 1.0) < 0.0) zero[c] = 1;
-      }
-    }
+    int zero[3];
+    const int size = images_of(p, rotation, zero);
     const double u[3] = {rotation ? -p[1] : 1.0, rotation ? p[0] : 0.0, 0.0};
     for (int c = 0; c < 3; c++) b[3 * i + c] = zero[c] ? 0.0 : size * u[c];
     for (int j = i; j < m; j++) {
-      const double *q = octant + 3 * j;
-      double block[9] = {0.0};
-      for (int s = 0; s < 8; s++) {
-        double sign[3], r[3];
-        int image = 1;
-        for (int d = 0; d < 3; d++) {
-          sign[d] = (s >> d & 1) ? -1.0 : 1.0;
-          if (sign[d] < 0.0 && q[d] == 0.0) image = 0;
-          r[d] = p[d] - sign[d] * q[d];
-        }
-        if (!image) continue;
-        const double chi = rotation ? sign[0] * sign[1] : sign[0];
-        double M[9];
-        sd_tensor_uf(SD_TENSOR_RPY, r, kappa, kappa, 1.0, M);
-        for (int e = 0; e < 9; e++) block[e] += chi * sign[e % 3] * M[e];
-      }
+      double block[9];
+      add_up_images(p, octant + 3 * j, kappa, rotation, block);
       for (int c = 0; c < 3; c++)
         for (int e = 0; e < 3; e++)
           A[(size_t) (3 * i + c) * n + 3 * j + e] = size * block[3 * c + e];
     }
     for (int c = 0; c < 3; c++) {
       if (!zero[c]) continue;
-      const int k =
-          3 * i + c; /* rows from k on are upper triangle only: later ones do not touch column k */
+      /* rows from k on are upper triangle only: later ones do not touch column k */
+      const int k = 3 * i + c;
       for (int l = 0; l < n; l++) A[(size_t) k * n + l] = A[(size_t) l * n + k] = 0.0;
       A[(size_t) k * n + k] = 1.0;
     }
