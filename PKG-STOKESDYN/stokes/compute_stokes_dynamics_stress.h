@@ -13,8 +13,8 @@
  * as the second term is 0, or made up for as the drift is, and so is the third one. The random forces f of
  * films, which come from nowhere, are no stress themselves. At x the same y and f alone make a D of mean 0
  * that has nearly all of the variance: `variance low` takes it off.
- * Source: the mean is that of Bossis & Brady, J. Chem. Phys. 87, 5437 (1987), -R_SU R_FU^-1 there; reference
- * of the project, noise-faster.md 3. */
+ * Source: the mean is that of Bossis & Brady, J. Chem. Phys. 87, 5437 (1987), -R_SU R_FU^-1 there; that
+ * one solve has it is our own. */
 #ifndef SD_COMPUTE_STOKES_DYNAMICS_STRESS_H
 #define SD_COMPUTE_STOKES_DYNAMICS_STRESS_H
 

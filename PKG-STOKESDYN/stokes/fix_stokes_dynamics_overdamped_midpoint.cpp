@@ -16,7 +16,7 @@
  * left, x' = S(dt) x + S(dt/2) dt (V - u_box) in a simple shear S. Added at the end of the step instead, the
  * displacement leaves <xy> of a dumbbell low by half of dt times its rate of relaxation. F_old is kept as it
  * is in space: it is a force that the step needs at x_mid, not one that goes with the box.
- * Source: reference of the project, noise-faster.md 2. */
+ * Source: own derivation; test_brownian_shear.py has closed forms of dumbbells. */
 #include "fix_stokes_dynamics_overdamped.h"
 
 #include "fixes.h"

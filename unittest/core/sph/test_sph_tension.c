@@ -37,7 +37,7 @@ static double mean_kappa(const drop *s)
   return sum / weight;
 }
 
-/* By quadrature in other variables, sph-tension.md, A3: h W1 of neighbours of S0, S0 and beta at z/h. */
+/* By quadrature in other variables: h W1 of neighbours of S0, S0 and beta at z/h. */
 static void a_plane_hides_what_integrals_say(void **state)
 {
   (void) state;

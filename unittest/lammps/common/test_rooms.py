@@ -200,6 +200,25 @@ def scripts():
             if path.name.endswith(kinds) or path.name.startswith(("in.", "CMakeLists"))]
 
 
+# of LAMMPS, MPI and another program, and examples of names
+ELSEWHERE = {"fix_deform.h", "mpi.h", "test_tensors.py", "a.c", "NAME_kernels.c"}
+
+
+def test_comments_name_files_that_are_here():
+    here = {path.name for room in ("PKG-STOKESDYN", "unittest", "examples", "cmake")
+            for path in (TOP / room).rglob("*")}
+    named = {}
+    for path in (path for room in ("PKG-STOKESDYN", "unittest") for path in (TOP / room).rglob("*.*")):
+        comment = {".py": r"# [^\n]*|\"\"\".*?\"\"\""}.get(path.suffix, r"/\*.*?\*/|//[^\n]*")
+        if path.suffix not in (".c", ".h", ".cpp", ".py"):
+            continue
+        for text in re.findall(comment, path.read_text(), re.S):
+            for name in re.findall(r"(?<![\w/*.-])[\w-]+\.(?:h|c|cpp|md|py|csv)\b", text):
+                named.setdefault(name, path.name)
+    assert len(named) > 150
+    assert {name: path for name, path in named.items() if name not in here | ELSEWHERE} == {}
+
+
 def test_lines_of_scripts_have_at_most_120_columns():
     files = scripts()
     assert len(files) > 500

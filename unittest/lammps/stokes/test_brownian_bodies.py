@@ -180,8 +180,8 @@ def test_bonds_between_spheres_with_films_have_boltzmanns_length(simulation, wor
 
 def test_stiff_bond_between_multiblobs_with_a_film_has_boltzmanns_length(simulation):
     """A gap of 0.15 and a standard deviation of 0.04 radii, in steps of 0.2 over the rate of the bond. Without the
-    drift the mean is 0.16 sigma too short; the scheme's own error is 0.02 sigma of the mean and 5 % of the variance
-    (noise-faster.md 1.2)."""
+    drift the mean is 0.16 sigma too short; the scheme's own error is 0.02 sigma of the mean and 5 % of the
+    variance."""
     count, k, r0, runs = 8, 625 * KT / A**2, 2.15, 400
     origin = np.array([(p, q, r) for p in (0, 30) for q in (0, 30) for r in (0, 30)], float)
     x = (origin[:, None] + A * np.array([(0, 0, 0), (r0, 0, 0)])).reshape(-1, 3)

@@ -11,9 +11,9 @@ from system import LammpsError, Spheres, dump_lines
 from test_brownian_bodies import CROOKED, SHARP, close_spheres, in_few_clumps
 from test_brownian_shear import DEFORM
 
-# three unit spheres with films, as in reference/scripts/noise_faster/stress.py, and what that independent program finds
-# for eta = kT = 1 with these films (0.41015 0.03902 0.67409 0.96436 1.97316 with its own, read from fewer means over
-# the orientations of the shells), and without films
+# three unit spheres with films, and what an independent program finds for eta = kT = 1 with these
+# films (0.41015 0.03902 0.67409 0.96436 1.97316 with its own, read from fewer means over the orientations of the
+# shells), and without films
 THREE = np.array([[0, 0, 0], [2.05, 0, 0], [0.3, 2.02, 0.5]])
 OF_THREE = [0.41277, 0.03971, 0.67460, 0.96076, 1.97214]
 WITHOUT_FILMS = [-0.134159, -0.065528, 0.075241, -0.024386, 0.094191]

@@ -64,7 +64,7 @@ def cell(L, lo=-1.0, hi=60.0):
     return [(0.0, float(L)), (0.0, float(L)), (float(lo), float(hi))]
 
 
-# Of one sphere of one point in a cell L x L, over 1/(6 pi eta a): along, across (self_against_L of the reference)
+# Of one sphere of one point in a cell L x L, over 1/(6 pi eta a): along, across, by another code
 @pytest.mark.parametrize("walls, z, L, along, across", [
     ("wall zlo 0", 1.0, 8, 0.573400, 0.247089), ("wall zlo 0", 1.5, 4, 1.617393, 0.2730165428),
     ("wall zlo 0", 1.0, 32, 0.501234, 0.249996), ("wall zlo 0 zhi 4", 2.0, 4, 1.031874, 0.291052),
@@ -75,7 +75,7 @@ def test_a_lone_sphere_in_a_cell(simulation, walls, z, L, along, across):
         assert sim.v[0, d] == pytest.approx(U, abs=1e-6)
 
 
-# Square layers that are pushed along and down, of an area fraction (monolayer of the reference)
+# Square layers that are pushed along and down, of an area fraction, by another code
 @pytest.mark.parametrize("spacing, along, down", [(3.963327, 1.003626165, 0.200929885),
                                                   (2.802496, 1.712828339, 0.125531476)])
 def test_a_layer_on_the_floor(simulation, spacing, along, down):

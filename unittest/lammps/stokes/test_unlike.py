@@ -56,8 +56,8 @@ def test_cases_of_lamb(simulation, tmp_path, xi):
 
 # --- groups -----------------------------------------------------------------------------------------------------------
 
-# The worst small sphere in strain, under unlike forces and under unlike torques, per cent, of the prototype (reference
-# of the project, unlike-radii.md 3). With 12 points for all they are 5 to 43 in strain.
+# The worst small sphere in strain, under unlike forces and under unlike torques, per cent, of a prototype in
+# Python. With 12 points for all they are 5 to 43 in strain.
 PROTOTYPE = {"1 + 3x0.333 close": (1.5, 0.9, 1.2), "1 + 3x0.2 apart": (0.9, 1.0, 2.6),
              "1 0.5 0.333 0.1": (0.6, 0.4, 0.6), "1 + 2x0.1": (1.0, 1.8, 3.0), "1 + 3x0.1 close": (1.3, 2.5, 4.9),
              "1 1 0.2 in the gap": (1.6, 0.7, 0.4), "1 1 0.1 in the gap": (0.8, 3.1, 0.2)}

@@ -9,7 +9,7 @@
  * symmetric, but for the length of torques, and turns with the body: numbers of points in axes of space
  * give the same velocities in whatever axes the shape is kept. The matrix may also be a part of M', the near
  * one of a sum that is split; what draws the other part is the caller's.
- * Source: reference of the project, noise-faster.md 1.1 and 1.5. */
+ * Source: own derivation; parts that are both positive: Fiore et al. 2017. */
 #ifndef SD_BODIES_NOISE_H
 #define SD_BODIES_NOISE_H
 

@@ -13,7 +13,7 @@
  * What is left then is the body's own, constant in its axes, with e_q the axes:
  *   slip = sum_q [e_q x, M_b'] A_(3 + q),   torque = sum_q sum_b (e_q x r_b) x A_b,(3 + q)
  * Not every shape has such an A: then A = M_b'^-1 K N, and the caller takes the sum by differences.
- * Source: reference of the project, noise-faster.md 1.2 and 1.3; the conditions are our own. */
+ * Source: own derivation. */
 #ifndef SD_BODY_FOLLOW_H
 #define SD_BODY_FOLLOW_H
 

@@ -15,7 +15,7 @@
  * P: the sparse H of sd_tie.h where bodies are tied, N_b^-1 of those that are not, so that v'' is hindered as
  * velocities are and films see no overlap. (Its incomplete factor would do for the mean, but differs with the
  * number of ranks.)
- * Source: reference of the project, noise-faster.md 1.2. */
+ * Source: own derivation; random finite differences: Delong et al. 2014. */
 #ifndef SD_DRIFTER_H
 #define SD_DRIFTER_H
 

@@ -28,8 +28,8 @@
  * Where larger spheres have more points, films end at a gap of the smaller sphere's size: between a large and
  * a small sphere more gap than that holds third ones, which their shells know and a film does not. Others
  * keep the range over the mean radius.
- * Source: reference of the project, motion.md 4.3 and multiblob.md 3; the rule of sharing is our
- * own. */
+ * Source: pairs exactly, less what the model has of them: Durlofsky, Brady & Bossis 1987; the rule of sharing
+ * and the films of shells are our own. */
 #ifndef SD_LUBRICATION_H
 #define SD_LUBRICATION_H
 

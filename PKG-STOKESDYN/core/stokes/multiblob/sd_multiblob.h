@@ -29,8 +29,7 @@
  * a crystal along the axes, to 0.66. There it depends on how shells that are all alike stand: among
  * 15 orientations the smallest eigenvalue at 0.7 is -0.05 to 0.06 over 6 pi eta a. Shells that each
  * stand at random have 0.05 to 0.09.
- * Source: reference of the project, multiblob.md 1 and 2; rigid multiblobs: Balboa Usabiaga et al.
- * 2016; the fat icosahedron and the addition are our own. */
+ * Source: rigid multiblobs: Balboa Usabiaga et al. 2016; the fat icosahedron and the addition are our own. */
 #ifndef SD_MULTIBLOB_H
 #define SD_MULTIBLOB_H
 

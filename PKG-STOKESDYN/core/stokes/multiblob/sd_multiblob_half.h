@@ -8,7 +8,7 @@
  *                                                                  points over 8 pi eta a^3)
  *
  * Of the points alone: rotation 0.947, 0.983, 0.996, stresslet 1.026, 1.011, 1.003 with 42, 162, 642.
- * Source: reference of the project, unlike-radii.md 2 and 4; make_half_shells makes the numbers. */
+ * Source: our own; make_half_shells makes the numbers. */
 #ifndef SD_MULTIBLOB_HALF_H
 #define SD_MULTIBLOB_HALF_H
 

@@ -15,7 +15,7 @@
  * turns along the wall within 1 %, near contact exactly. At a gap of 0.5 B is 1.5 % of the normal
  * resistance for 12 points and 3 % for 42, at 1 nothing for 12 and 0.6 % for 42; it fades from a
  * gap of 1 and ends at 2. Gaps below the floor count as the floor.
- * Source: reference of the project, multiblob.md 11. */
+ * Source: our own; exact numbers are those of sd_wall_film.h. */
 #ifndef SD_MULTIBLOB_WALL_H
 #define SD_MULTIBLOB_WALL_H
 

@@ -1,7 +1,7 @@
 /* A preconditioner that is kept from solve to solve (sd_precondition.h).
  *
  * It is made at some positions x_0 and stays good for a while as spheres move on. The caller keeps
- * x_0, says by sd_moved when to take new ones, and asks for the P of x_0 in every solve: it is made
+ * x_0, says by sd_moved_too_far when to take new ones, and asks for the P of x_0 in every solve: it is made
  * where it is not there yet, so that what is kept is a matter of time, never of the answer.
  * Viscosities may change in between: M = W M_1 W with W = diag(1/sqrt(eta)), so P = W^-1 P_1 W^-1
  * with the W of now and the P_1 of viscosity 1.

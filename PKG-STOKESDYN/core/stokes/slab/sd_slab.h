@@ -23,7 +23,7 @@
  * for spheres z^2 is z^2 + 2 a^2/6, and for each of its ends z (H - z) is z (H - z) - 2 a^2/6. A
  * force across moves nothing on average. In a layer the forces along it must add up to 0: else
  * the fluid above and below is sheared without end, and M is not positive. Source: own
- * derivation and errors (reference of the project, walls-periodic.md). */
+ * derivation (sd_slab_wave.h); errors: unittest/bench/bench_slab.c. */
 #ifndef SD_SLAB_H
 #define SD_SLAB_H
 

@@ -144,9 +144,8 @@ sd_status sd_slab_corner_create(sd_slab_corner *c, const sd_slab *slab)
   return SD_OK;
 }
 
-/* Lambda_dg, d = 0, 1, 2, g = 0, 1, 2, and G_tt, G_zz of the reference: coefficients of cos q Z
- * where d + g is even, of sin q Z where it is odd. (i q)^d (i gamma)^g e^{iqZ}, q and -q
- * together */
+/* Sums over q, q and -q together, of (i q)^d (i gamma)^g e^{iqZ}, d = 0, 1, 2, g = 0, 1, 2, and of what acts
+ * on t and on z without gamma: coefficients of cos q Z where d + g is even, of sin q Z where it is odd */
 enum { LAMBDA = 9, GTT = LAMBDA, GZZ, SERIES };
 
 static void fill_series(sd_slab_corner *c, double k)
@@ -212,7 +211,7 @@ void sd_slab_corner_at(sd_slab_corner *c, double k, double *value, long stride)
     take_repeats(c, &w, k, Z, sum);
     const double *L0 = sum, *L1 = sum + 3, *L2 = sum + 6;
     const double e = exp(-k * Z) / (4.0 * k * w.W * w.W), cross = k * r * Z + r * r;
-    const double both = k * Z + 2.0 * r; /* c + x of (4) of the reference; c x = k^2 z z' + cross */
+    const double both = k * Z + 2.0 * r; /* c + x of (2), sd_slab_wave.h; c x = k^2 z z' + cross */
     v[SD_CORNER_LL] =
         sum[GZZ] - sum[GTT] - 2.0 * k * k * (Z * L0[1] + L0[2]) + e * (1.0 - both + 2.0 * cross);
     v[SD_CORNER_LZ] = -2.0 * k * (Z * L1[1] + L1[2]) - 2.0 * e * cross;

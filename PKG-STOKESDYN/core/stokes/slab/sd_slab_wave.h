@@ -7,7 +7,11 @@
  *
  * A force on plane z' drives on plane z, y = k |z - z'|, s = sign(z - z'), viscosity 1:
  *   e^-y/(4k) [[1 - y, -s y], [s y, 1 + y]] on (l, z~),   e^-y/(2k) on t                       (1)
- * Source: own derivation (reference of the project, walls-periodic.md 3, 4.2 to 4.4). */
+ * and with the image in one wall at z = 0 also, c = k z, x = k z'; of spheres, and through windows, each is
+ * longer by `shift` (below),
+ *   -e^-(c + x)/(4k) [[1 - c - x + 2 c x, x - c - 2 c x], [c - x - 2 c x, 1 + c + x + 2 c x]],
+ *   -e^-(c + x)/(2k) on t, the exponents without shift                                             (2)
+ * Source: own derivation; test_slab_tables has numbers of an independent code. */
 #ifndef SD_SLAB_WAVE_H
 #define SD_SLAB_WAVE_H
 

@@ -25,8 +25,8 @@
  * the two surfaces. So their matrix is symmetric and positive definite for every overlap while all
  * spheres are in z >= a, touching included. A sphere that cuts the wall has the matrix that it has
  * where it touches: the whole matrix, free part included, is made with heights max(z, a).
- * Source: Blake 1971; the averages and their form are our own (reference of the project, walls.md 1
- * and 2); one radius and no torques: Swan & Brady 2007. */
+ * Source: Blake 1971; the averages and their form are our own; one radius and no torques: Swan &
+ * Brady 2007. */
 #ifndef SD_WALL_H
 #define SD_WALL_H
 

@@ -18,8 +18,8 @@
  * eigenvalues of B_pq/(8 pi a_p^1.5 a_q^1.5) are clipped at 0: D >= 0.
  *
  * Shells are all alike, or of 12, 42, 162, 642 points by radius, the larger ones half shells
- * (sd_multiblob_half.h); then each pair of numbers of points has its own means. Source: reference of the
- * project, multiblob.md 3, unlike-radii.md; the form is our own. */
+ * (sd_multiblob_half.h); then each pair of numbers of points has its own means. Source: our
+ * own; make_film_table makes the numbers. */
 #ifndef SD_FILM_H
 #define SD_FILM_H
 

@@ -34,8 +34,7 @@
  * is clipped, so B >= 0.
  * Sources: Brenner 1961 (normal), Jeffery 1915 (spin), Dean & O'Neill 1963, O'Neill 1964 (parallel,
  * roll), Jeffrey & Onishi 1984 (slopes near contact), Goldman, Cox & Brenner 1967 (shear); the
- * numbers are recomputed, and the published constants near contact are off by up to 0.011:
- * reference of the project, walls.md 4 and 7. */
+ * numbers are recomputed, and the published constants near contact are off by up to 0.011. */
 #ifndef SD_WALL_FILM_H
 #define SD_WALL_FILM_H
 

@@ -226,8 +226,8 @@ static void spheres_and_clumps_solve_the_system(void **state)
   flock_free(f);
 }
 
-/* motion.md 3.2: products for weights to 1e-3 and 1e-6 (own clouds, hence one more allowed), and
- * how good V is then. */
+/* Products of a prototype in Python for weights to 1e-3 and 1e-6 (in clouds of its own, hence one more
+ * allowed), and how good V is then. */
 static void products_are_few(void **state)
 {
   (void) state;

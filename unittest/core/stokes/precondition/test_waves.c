@@ -311,7 +311,7 @@ static void check_iterations(const scene *s, const sd_ewald_box *box, int width,
   sd_waves_free(&blocks);
 }
 
-/* 4096 spheres (reference, ewald.md 7.2: 42 / 84 without and 15 / 33 with at phi 0.1, 66 / 130 and 26 / 51 at 0.45) */
+/* 4096 spheres (a prototype in Python: 42 / 84 without and 15 / 33 with at phi 0.1, 66 / 130 and 26 / 51 at 0.45) */
 static void iterations_of_a_suspension(void **state)
 {
   (void) state;

@@ -79,7 +79,7 @@ static void a_lone_sphere_is_that_of_dpstokes(void **state)
 }
 
 /* The mean of the velocities with and without flux is that in a slit without end, but for quadrupoles: the dipole of
- * the long waves is taken away. RPY_parallel, RPY_normal of another code by quadrature (exact_slit of the reference);
+ * the long waves is taken away. RPY_parallel, RPY_normal of another code by quadrature;
  * Faxen's series, of a sphere in the middle, is good to 4e-4 at a slit of ten radii and better in wider ones. */
 static void a_sphere_in_the_middle_moves_as_faxen_says(void **state)
 {

@@ -11,7 +11,7 @@ enum { MODES = SD_SHELL_MODES, BOTH = SD_SHELL_BOTH, LOADS = 11, WAYS = 12 };
 static const char *const names[LOADS] = {"F_l along",  "F_l across", "F_s along", "F_s across",
                                          "T_l along",  "T_l across", "T_s along", "T_s across",
                                          "E along",    "E shear",    "E across"};
-/* As the reference has them: fluid of a strain along the line, in a plane with it, across it */
+/* As the table has them: fluid of a strain along the line, in a plane with it, across it */
 static const double strains[3][9] = {
     {0.40824829046386302, 0, 0, 0, 0.40824829046386302, 0, 0, 0, -0.81649658092772603},
     {0, 0, 0.70710678118654752, 0, 0, 0, 0.70710678118654752, 0, 0},
