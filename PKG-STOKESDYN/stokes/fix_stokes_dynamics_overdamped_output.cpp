@@ -7,6 +7,7 @@
 #include "sd_neighbor.h"
 
 #include "atom.h"
+#include "force.h"
 #include "update.h"
 
 #include <algorithm>
@@ -62,12 +63,13 @@ double FixStokesDynamicsOverdamped::compute_vector(int k)
   return values[k]();
 }
 
+/* In units of pressure over length, which in units real and metal is not force over volume */
 double FixStokesDynamicsOverdamped::pressure_gradient(int d) const
 {
   Hydrodynamics &hydro = hydrodynamics();
   double gradient[3] = {0.0};
   if (hydro.computed_in((double) update->ntimestep)) hydro.pressure_gradient(gradient);
-  return gradient[d];
+  return force->nktv2p * gradient[d];
 }
 
 double FixStokesDynamicsOverdamped::fastest_of_all() const

@@ -222,6 +222,7 @@ void PairStokesDynamics::init_style()
   check_layer(voice, hydro.settings, hydro.overdamped);
   refuse_moving_box(voice, scene.boundary);
   check_deform(voice, !hydro.overdamped, hydro.ambient.varies(), hydro.settings.rigid.on);
+  refuse_wide_skin(voice, range(), largest_diameter);
   sorting_bins.limit(range());
   if (!hydro.overdamped) look_at_neighbours();    // the fix does so that moves them
 }

@@ -181,7 +181,20 @@ void announce_step_limit(const Voice &voice, bool euler, double smallest_drag, d
                " allows in dense packings");
 }
 
-// --- bins of LAMMPS ------------------------------------------------------------------------------
+// --- ghosts and bins of LAMMPS -------------------------------------------------------------------
+
+void refuse_wide_skin(const Voice &voice, double range, double diameter)
+{
+  const Domain *domain = voice.lmp->domain;
+  const double skin = voice.lmp->neighbor->skin;
+  double images = 1.0;
+  for (int d = 0; d < 3; d++)
+    if (domain->periodicity[d]) images *= 1.0 + 2.0 * (range + skin) / domain->prd[d];
+  if (images > 1e3 && images * (double) voice.lmp->atom->natoms > 1e6)
+    voice.fail("the skin " + text(skin) + " of LAMMPS's command neighbor makes more than 1000 ghosts of each sphere "
+               "and 1e6 in all in this periodic box: give a smaller one, such as neighbor " +
+               text(0.1 * diameter) + " bin");
+}
 
 void SortingBins::limit(double range)
 {

@@ -12,6 +12,11 @@ struct StokesSettings;
 /* The first call of BLAS in a process wants memory, and tries for ever where there is none. */
 void check_room_of_blas(const Voice &voice);
 
+/* LAMMPS makes ghosts up to its skin, which is a millimetre by default in units si: in a periodic box of
+ * micrometres it would make them for hours. range: what LAMMPS takes for the cut-off; diameter: of the
+ * largest sphere, for the way out */
+void refuse_wide_skin(const Voice &voice, double range, double diameter);
+
 /* A shear flow, say, does not fit a periodic box, unless that is sheared with it. */
 void warn_of_misfit(const Voice &voice, double misfit);
 

@@ -4,7 +4,7 @@ constants and of the definitions of the units in LAMMPS's manual, not taken from
 import numpy as np
 import pytest
 
-from system import Spheres, lmp, input_lines
+from system import LammpsError, Spheres, lmp, input_lines
 
 AVOGADRO, CHARGE, CALORIE = 6.02214076e23, 1.602176634e-19, 4.184
 
@@ -60,3 +60,32 @@ def test_limit_of_the_time_step_is_in_the_units_of_time(tmp_path, units):
     vxmu2f = viscosity * length * velocity / force
     mass = density * 4 / 3 * np.pi * A**3
     assert limit == pytest.approx(2 * mass / (6 * np.pi * ETA * A * vxmu2f * gain), rel=0.05)
+
+
+# SI value of a unit of pressure
+PRESSURE = {"lj": 1.0, "si": 1.0, "cgs": 0.1, "real": 101325.0, "metal": 1e5, "micro": 1e-15 / (1e-6 * 1e-12),
+            "nano": 1e-21 / (1e-9 * 1e-18)}
+
+
+@pytest.mark.parametrize("units", list(UNITS))
+def test_the_pressure_gradient_in_a_slit_is_a_pressure_over_a_length(simulation, units):
+    """That of a force in a closed slit, by the reciprocal theorem: 6/(S H^3) [z (H - z) - a^2/3] F"""
+    length, _, _, force = UNITS[units]
+    z, H, a = 3.0, 8.0, 1.0
+    sim = simulation(Spheres([(0, 0, z)], a), f"cut_off_distance inf visc {ETA} wall zlo 0 zhi {H} flow flux",
+                     boundary="p p f", box=[(-5, 5), (-5, 5), (-1, 9)], units=units, fix=False)
+    sim.commands("fix pull all addforce 2.0 0 0\nfix move all stokes_dynamics/overdamped").run(0)
+    gradient = 6 / (100 * H**3) * (z * (H - z) - a**2 / 3) * 2.0 * force / length**3
+    assert sim.lmp.extract_fix("move", 0, 1, nrow=12) * PRESSURE[units] / length == pytest.approx(gradient, rel=2e-5)
+
+
+def test_the_skin_of_units_si_in_a_box_of_micrometres_is_an_error(simulation):
+    """LAMMPS would make 1e7 ghosts of each sphere before it says a word."""
+    a = 1e-6
+    sim = simulation(Spheres([(0, 0, 0), (4e-6, 0, 0)], a), "cut_off_distance inf visc 1e-3", units="si",
+                     boundary="p p p", box=[(-4e-6, 4e-6)] * 3)
+    with pytest.raises(LammpsError, match="the skin 0.001 of LAMMPS's command neighbor makes more than 1000 ghosts of "
+                                          "each sphere and 1e6 in all .*, such as neighbor 2e-07 bin"):
+        sim.run(0)
+    sim.command("neighbor 2e-7 bin")
+    assert np.isfinite(sim.run(0).drag).all()
