@@ -216,10 +216,12 @@ sd_status sd_ewald_prepare(const sd_ewald_box *box, const sd_ewald_class *all, d
 
 /* Is single precision enough for a splitting and its spheres? The tolerance may be off by its last digits.
  * Coordinates have steps of range/2^30 then (sd_ewald_internal.h): a millionth of a radius at most, which
- * spheres in touch feel. */
+ * spheres in touch feel. Floats hold squares of lengths, and of their inverses, from 1e-38 to 1e38. */
 static int floats_do(const sd_ewald *e, const sd_ewald_class *s)
 {
-  return e->tolerance >= SD_EWALD_SINGLE * (1.0 - 1e-9) && e->range <= 1e3 * sqrt(s->squares / s->count);
+  const double shortest = 1e-15, longest = 1e13;
+  return e->tolerance >= SD_EWALD_SINGLE * (1.0 - 1e-9) && e->range <= 1e3 * sqrt(s->squares / s->count) &&
+      e->range >= shortest && e->range <= longest;
 }
 
 sd_status sd_ewald_choose(const sd_ewald_box *box, const sd_ewald_sizes *sizes, int width,

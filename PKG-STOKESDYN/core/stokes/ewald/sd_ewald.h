@@ -31,7 +31,8 @@ SD_BEGIN_C
 #define SD_EWALD_POSITIVE_ADDITION 0.5
 
 /* From this tolerance on sums that have no walls and draw no noise are of floats, whose own error is
- * below a tenth of it; unless the range is a thousand radii, which few spheres in a huge box have. */
+ * below a tenth of it; unless the range is a thousand radii, which few spheres in a huge box have, or
+ * squares of lengths are beyond what floats hold. */
 #define SD_EWALD_SINGLE 1e-5
 
 /* The rule, for a box and its spheres.

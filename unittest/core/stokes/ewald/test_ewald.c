@@ -231,6 +231,33 @@ static void the_matrix_is_symmetric_at_any_tolerance(void **state)
   }
 }
 
+/* Velocities from forces are as 1/length, spins as its square, whether that is measured in light years or in nuclei. */
+static void any_unit_of_length_has_the_same_answer(void **state)
+{
+  (void) state;
+  const double units[] = {1e-25, 1e-20, 1e-9, 1e9, 1e17, 1e25};
+  for (int k = 0; k < SCENES; k++) {
+    for (int j = 0; j < 6; j++) {
+      reference s = reference_scene(names[k]);
+      for (int d = 0; d < 3; d++) s.box.edge[d] *= units[j], s.box.tilt[d] *= units[j];
+      for (int i = 0; i < 3 * s.n; i++) s.x[i] *= units[j];
+      for (int i = 0; i < s.n; i++) s.a[i] *= units[j];
+      for (int i = 0; i < s.width * s.n; i++) {
+        const int turns = i % s.width > 2;
+        s.F[i] *= turns ? units[j] : 1.0;
+        s.U[i] /= turns ? units[j] * units[j] : units[j];
+      }
+      const sd_ewald how = periodic_choose(&s.box, s.a, s.n, s.width, 1e-3);
+      periodic p;
+      double u[6 * MOST];
+      periodic_place(&p, s.x, s.a, NULL, s.n, s.width, &how);
+      periodic_apply(&p, s.F, u);
+      assert_true(error_of(&s, u) < 1e-3);
+      periodic_free(&p);
+    }
+  }
+}
+
 /* Cubic arrays: settling velocity, drag, and the spin mobility, which is exactly (1 - phi)/(8 pi a^3) until the spheres
  * touch. The engine's self is what it does to a sphere beyond its own 1/(6 pi a); for one sphere a cell that is all. */
 static void cubic_arrays_settle_as_they_should(void **state)
@@ -273,6 +300,7 @@ int main(void)
       cmocka_unit_test(a_translation_changes_nothing),
       cmocka_unit_test(a_flip_of_the_box_changes_nothing),
       cmocka_unit_test(the_matrix_is_symmetric_at_any_tolerance),
+      cmocka_unit_test(any_unit_of_length_has_the_same_answer),
       cmocka_unit_test(cubic_arrays_settle_as_they_should),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
