@@ -161,7 +161,7 @@ void FixStokesDynamicsOverdamped::after_setup()
 {
   if (first != EARLY)
     set_up();
-  else if (!causes_stand(hydrodynamics()))
+  else if (!causes_stand(hydrodynamics(), LOADS))
     voice.at_step().fail("a fix took its first value of a stress before all forces of this step were known: "
                          "define it after the fixes that add forces");
   first = FOUND;

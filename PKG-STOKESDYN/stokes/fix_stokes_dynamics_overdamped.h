@@ -79,7 +79,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   AtomArray output;
   /* [4] and from step to step: where bodies go it turns, and nothing else of the output is touched */
   AtomArray turned;
-  enum { KINDS = 10, CAUSES = 12 };
+  enum { LOADS = 4, KINDS = 10, CAUSES = 12 };
   /* also in restart files: the step of the velocities (-1: never), its length; the length that
    * adapt wants next; atoms there are */
   struct {
@@ -109,7 +109,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
       voice, "there is no pair_style stokes_dynamics with the settings of the fluid"};
   bool goes_on(const Hydrodynamics &) const;
   void find_causes(const Hydrodynamics &, double *causes) const;
-  bool causes_stand(const Hydrodynamics &) const;
+  bool causes_stand(const Hydrodynamics &, int which = CAUSES) const;
   void note_causes(const Hydrodynamics &);
   void find_kinds(const Hydrodynamics &, double *kinds) const;
   void forget_before_change(const Hydrodynamics &);

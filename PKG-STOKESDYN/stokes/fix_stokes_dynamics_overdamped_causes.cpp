@@ -77,13 +77,14 @@ void FixStokesDynamicsOverdamped::post_run()
   note_left();
 }
 
-/* Are there as many atoms as in the step of the last velocities, and do they follow from the same? */
-bool FixStokesDynamicsOverdamped::causes_stand(const Hydrodynamics &hydro) const
+/* Are there as many atoms as in the step of the last velocities, and do they follow from the same? which: LOADS, the
+ * first of them, or CAUSES, all. Noise leaves the fluid as it is half a step later. */
+bool FixStokesDynamicsOverdamped::causes_stand(const Hydrodynamics &hydro, int which) const
 {
   double now[CAUSES];
   find_causes(hydro, now);
   bool same = last.atoms == atom->natoms;
-  for (int k = 0; k < CAUSES; k += 2)
+  for (int k = 0; k < which; k += 2)
     same = same && fabs(now[k] - last.causes[k]) <= 1e-8 * std::max(now[k + 1], last.causes[k + 1]);
   return same;
 }

@@ -263,6 +263,15 @@ def test_averages_take_the_value_of_the_first_step_too(simulation, tmp_path, var
         assert values[values[:, 0] == step, 1] == pytest.approx(value, rel=1e-5)
 
 
+def test_averages_take_the_first_value_in_a_box_that_shears_too(simulation, tmp_path):
+    """The solve of a step with noise reads the fluid half a step later"""
+    sim = simulation(Spheres(THREE), f"{FILMS} fluid_velocity box", fix=False, dt=1e-3, boundary="p p p",
+                     box=[(-10.0, 10.0)] * 3, tilt=(0.0, 0.0, 0.0))
+    sim.commands(["fix shear all deform 1 xy erate 0.5 remap none", *IN_SETUP, "compute S all stokes_dynamics/stress",
+                  f"fix out all ave/time 2 1 2 c_S[4] file {tmp_path}/values", "thermo_style custom c_S[4]"]).run(0)
+    assert np.loadtxt(tmp_path / "values")[1] == pytest.approx(sim.lmp.extract_compute("S", 0, 1)[3], rel=1e-5)
+
+
 def test_a_first_value_without_all_forces_is_an_error(simulation):
     sim = simulation(Spheres(THREE), FILMS, fix=False, dt=1e-3)
     sim.commands(IN_SETUP[1:] + [line.format("raw") for line in SUM] + ["fix out all ave/time 1 1 2 c_sum[4]"] +
