@@ -150,12 +150,14 @@ int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, d
 }
 
 /* Of the window over its points: where it is differentiated its jump at the ends must be smaller; twice for
- * unlike radii */
+ * unlike radii. With the points that windows have for heights above a wall that jump is far below the tolerance,
+ * and short waves, which heights multiply, are mistaken less with a smaller beta. */
 double sd_splitting_beta(const sd_ewald *e, const splitting *by)
 {
   if (equal_turn(by)) return 2.3;
   if (by->five) return 2.7;
-  if (by->fall == BAND ? !by->equal : by->slopes) return 2.42;
+  const double heights = by->at_wall ? 0.016 * fmax(0.0, e->points - 10.0) : 0.0;
+  if (by->fall == BAND ? !by->equal : by->slopes) return 2.42 - heights;
   return by->fall == BAND && !e->box.periodic && e->points <= FEW_POINTS ? 2.35 : 2.25;
 }
 
