@@ -158,8 +158,8 @@ struct sd_ewald_kernels {
   /* of a number */
   size_t bytes;
   void (*near_part)(const sd_near_part *p);
-  /* how many rows a bunch may have, of forces alone; with torques one */
-  int bunch;
+  /* how many rows a bunch may have, of forces alone, and of unlike radii; with torques one */
+  int bunch, bunch_unlike;
   /* forces alone, p->first and p->neighbor not read; NULL: vectors do not hold a group */
   void (*near_groups)(const sd_near_part *p, const sd_near_groups *g);
   void (*spread)(const sd_spreading *s);

@@ -50,10 +50,10 @@ static void open_row(void *const *f, const void *table, double sign_x, double si
 
 #ifdef SD_SINGLE
 const struct sd_ewald_kernels SD_KERNELS(sd_ewald_single) = {
-    sizeof(real), near_part, BUNCH, NEAR_GROUPS, SPREAD, INTERPOLATE, periodic_row, open_row,
+    sizeof(real), near_part, BUNCH, BUNCH_UNLIKE, NEAR_GROUPS, SPREAD, INTERPOLATE, periodic_row, open_row,
     NULL, NULL, NULL, NULL};
 #else
 const struct sd_ewald_kernels SD_KERNELS(sd_ewald) = {
-    sizeof(real), near_part, BUNCH, NEAR_GROUPS, SPREAD, INTERPOLATE, periodic_row, open_row,
+    sizeof(real), near_part, BUNCH, BUNCH_UNLIKE, NEAR_GROUPS, SPREAD, INTERPOLATE, periodic_row, open_row,
     search, own_block, image_part, image_rows};
 #endif

@@ -49,20 +49,22 @@ static long search(const double *centre, long stride, const int *ranges, int cou
 
 #endif
 
-#ifdef SD_SINGLE
-enum { SINGLE = 1 };
+/* Rows of a bunch: with vectors of 64 bytes, reading and writing the rows of neighbours takes longer than the
+ * pairs; with shorter ones it does not, and pairs beyond the range would cost more than is saved. So it is
+ * with unlike radii in doubles, which have twice as many polynomials. Groups are longer. */
+#if LANES == LANES_OF(64)
+enum {
+  BUNCH = SD_BUNCH,
+  BUNCH_UNLIKE = sizeof(real) == sizeof(float) ? SD_BUNCH : 1,
+  NEAR_ROWS = SD_GROUP_POINTS
+};
 #else
-enum { SINGLE = 0 };
+enum { BUNCH = 1, BUNCH_UNLIKE = 1, NEAR_ROWS = BUNCH };
 #endif
 
-/* Rows of a bunch: with long vectors, reading and writing the rows of neighbours takes longer than the pairs;
- * with shorter ones it does not, and pairs beyond the range would cost more than is saved. Groups are
- * longer. */
-#if LANES >= 16
-enum { BUNCH = SD_BUNCH, NEAR_ROWS = SD_GROUP_POINTS };
-#else
-enum { BUNCH = 1, NEAR_ROWS = BUNCH };
-#endif
+/* Is the arithmetic of a vector of pairs so short that a branch costs more than the formulas on both its
+ * sides? */
+enum { BRANCHLESS = LANES == LANES_OF(64) || sizeof(real) == sizeof(float) };
 
 /* COUNT polynomials of one degree at once: coefficient [COUNT][stride] */
 INLINE void horner(int count, int degree, const real *coefficient, int stride, vec t, vec *value)
@@ -99,6 +101,9 @@ static void near_polynomials_of(const sd_near_part *p, near_polynomials *c)
     for (int k = 0; k <= p->degree; k++) c->of[f][k] = (real) p->coefficient[f][k];
 }
 
+/* More than rounding makes of the square of a distance */
+static const double HAIR = sizeof(real) == sizeof(float) ? 1e-6 : 1e-13;
+
 /* What the kernels of forces know of all pairs, and of the first sphere of one. ends2: where they end if
  * nobody has looked before; a hair beyond the range, since images of one sphere may be just there, and
  * rounding would decide. c: its polynomials, those of all where radii are equal; G: its force */
@@ -114,7 +119,7 @@ typedef struct {
 
 INLINE near_constants near_constants_of(const sd_near_part *p)
 {
-  return (near_constants){all((real) p->unit), all((real) p->range2), all((real) (p->range2 * (1.0 + 1e-6))),
+  return (near_constants){all((real) p->unit), all((real) p->range2), all((real) (p->range2 * (1.0 + HAIR))),
                           all((real) (2.0 / p->range2)), all((real) p->ref2), alike_of((real) sqrt(p->ref2))};
 }
 
@@ -128,8 +133,7 @@ typedef struct {
   vec d[3], f, h;
 } near_pairs;
 
-/* Pairs with spheres whose rows are the columns `at`. equal: all radii are a_ref, and two polynomials do; in
- * floats the arithmetic of a pair is so short that a branch costs more than the formulas on both its sides.
+/* Pairs with spheres whose rows are the columns `at`. equal: all radii are a_ref, and two polynomials do.
  * ends: f and h are 0 beyond ends2; without it all pairs are within the range */
 INLINE near_pairs near_radial(int equal, int ends, int degree, const near_constants *k, const near_first *i,
                               const vec at[8])
@@ -139,7 +143,7 @@ INLINE near_pairs near_radial(int equal, int ends, int degree, const near_consta
   for (int e = 0; e < 3; e++) d[e] = length_between(all(i->x[e]), at[e], k->unit);
   const vec ai = all(i->a), aj = at[3], r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
   const vec t = smaller(r2, k->range2) * k->twice - all(1.0);
-  if (equal && SINGLE)
+  if (equal && BRANCHLESS)
     block_alike(r2, &k->of_all, f, h);
   else
     block(r2, ai, aj, ai * ai + aj * aj, f, h);
@@ -272,7 +276,7 @@ INLINE void near_torques(int equal, int degree, const sd_near_part *p)
       const vec dx = length_between(x, at[0], unit), dy = length_between(y, at[1], unit);
       const vec dz = length_between(z, at[2], unit), aj = at[3];
       const vec r2 = dx * dx + dy * dy + dz * dz, t = smaller(r2, range2) * twice - one;
-      if (equal && SINGLE)
+      if (equal && BRANCHLESS)
         grand_alike(r2, &of_all, &b);
       else
         grand_block(r2, a, aj, a * a + aj * aj, &b);

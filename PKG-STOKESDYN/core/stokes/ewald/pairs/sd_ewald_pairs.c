@@ -20,7 +20,7 @@ void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
   p->full = (int) (SD_FULL * sizeof(double) / p->bytes);
   p->ewald = *e;
   p->width = width;
-  p->most = width == 3 ? kernels->bunch : 1;
+  p->most = width > 3 ? 1 : e->largest == e->a_ref ? kernels->bunch : kernels->bunch_unlike;
   p->unit = 1.0;
   p->degree = sd_near_degree(sd_radial_fit(e, width, p->coefficient[0]));
   sd_radial(e, 0.0, p->origin);
