@@ -1,11 +1,12 @@
 /* N numbers from one place to another that it does not touch, in a few instructions. std::copy_n must allow
  * for places that overlap and calls the library, which in a loop over short rows costs more than all else.
- * And where a row is. */
+ * And where a row is, and room for rows. */
 #ifndef SD_COPY_H
 #define SD_COPY_H
 
 #include <cstddef>
 #include <cstring>
+#include <vector>
 
 namespace StokesDyn {
 
@@ -30,6 +31,16 @@ inline void copy_row(size_t width, const double *from, double *to)
 inline double *atom_row(double **rows, int i)
 {
   return rows[0] + 3 * (size_t) i;
+}
+
+/* Room for so many numbers, whose values do not matter; what was there is lost where it did not have that */
+inline double *at_least(size_t numbers, std::vector<double> &room)
+{
+  if (room.size() < numbers) {
+    room.clear();
+    room.resize(numbers);
+  }
+  return room.data();
 }
 
 }    // namespace StokesDyn

@@ -57,7 +57,6 @@ void BodyScene::assemble(Films films)
   if (films != STANDING_FILMS) film_arm.clear();
   if (scene.shells) place_points();
   arrange();
-  open = shaped;
   stand_at_wall();
   put_together();
   if (films != NO_FILMS) tie_films(films);
@@ -312,6 +311,7 @@ void BodyScene::stand_at_wall()
 {
   standing.clear();
   if (!slowed_by_wall()) return;
+  open = shaped;
   const double count = sum_of_all(world, (double) shaped.size());
   for (sd_body &body : shaped) {
     const sd_status status = stand_at_wall(body, count);

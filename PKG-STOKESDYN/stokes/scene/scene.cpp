@@ -215,7 +215,8 @@ std::vector<double> Scene::turned_shells(int n_all_or_copies)
 /* The same with the points of the spheres */
 void Scene::place_points(int n_all_or_copies, sd_mobility_scene &scene)
 {
-  shells->expand(n_all_or_copies, turned_shells(n_all_or_copies), view() == SD_VIEW_ALL ? cloud() : local());
+  shells->expand(n_all_or_copies, turned_shells(n_all_or_copies), view() == SD_VIEW_ALL ? cloud() : local(),
+                 engine->reads_places_once ? idle : nullptr);
   scene.n = shells->first_of_rows()[size()];
   scene.n_all = shells->first_of_all()[n_all_or_copies];
   scene.spheres = shells->all();

@@ -79,6 +79,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   WholeClumps whole;
   /* Spheres are shells of points, which are what the engine sees; nullptr: they are points */
   Shells *shells = nullptr;
+  /* With shells: room that nobody else uses while spheres are placed */
+  std::vector<double> *idle = nullptr;
   /* With shells: finds which each sphere has, and turns those of clumps, when the rows stand */
   std::function<void()> fit, orient;
   void turn_shells()

@@ -1,5 +1,6 @@
 #include "shells.h"
 
+#include "copy.h"
 #include "keywords.h"
 
 #include <algorithm>
@@ -170,7 +171,7 @@ std::vector<double> Shells::sent(int n) const
   return rows;
 }
 
-void Shells::expand(int n, const std::vector<double> &rows, const sd_spheres &spheres)
+void Shells::expand(int n, const std::vector<double> &rows, const sd_spheres &spheres, std::vector<double> *room)
 {
   const size_t width = sent_width();
   std::vector<double> turns;
@@ -186,10 +187,11 @@ void Shells::expand(int n, const std::vector<double> &rows, const sd_spheres &sp
                                   of_all.first.data()};
   find_forms(s);
   const size_t points = of_all.first[n];
-  x.resize(3 * points + 3);
+  double *to = at_least(3 * points + 3, room ? *room : x);
+  places = to;
   b.resize(points + 1);
   w.resize(points + 1);
-  sd_multiblob_expand(models.data(), &s, nullptr, x.data(), b.data());
+  sd_multiblob_expand(models.data(), &s, nullptr, to, b.data());
   for (int k = 0; k < n; k++)
     std::fill(&w[of_all.first[k]], &w[0] + of_all.first[k + 1], spheres.w[k]);
 }

@@ -98,9 +98,11 @@ class Shells : protected LAMMPS_NS::Pointers {
   /* Turn and mask as they are sent: [sent_width() n] */
   int sent_width() const { return 9 + words; }
   std::vector<double> sent(int n) const;
-  /* Points of n spheres whose rows are given as they are sent; none: all of them are free */
-  void expand(int n, const std::vector<double> &rows, const sd_spheres &spheres);
-  sd_spheres all() const { return {x.data(), b.data(), w.data()}; }
+  /* Points of n spheres whose rows are given as they are sent; none: all of them are free. Where they stand
+   * is written to this room, which may be used for something else when nobody asks for it any more; nullptr:
+   * to one of their own */
+  void expand(int n, const std::vector<double> &rows, const sd_spheres &spheres, std::vector<double> *room);
+  sd_spheres all() const { return {places, b.data(), w.data()}; }
   const std::vector<int> &first_of_all() const { return of_all.first; }
   /* Those of a sphere are a group; free spheres of one radius have one form, and turned ones none. */
   sd_groups groups() const { return {(int) forms.size(), of_all.first.data(), forms.data()}; }
@@ -125,6 +127,8 @@ class Shells : protected LAMMPS_NS::Pointers {
   std::vector<double> turn;
   Masks mask;
   std::vector<double> x, b, w;
+  /* of the last expand(): in x, or in the room that was lent */
+  const double *places = nullptr;
 
   /* Of models[0]: a restart file may say that spheres are unlike before these are made by radius. */
   bool smallest_is_half = false;

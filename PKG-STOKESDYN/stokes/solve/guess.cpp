@@ -185,9 +185,12 @@ void Guess::keep_motions(const std::vector<double> &v, double kept)
 {
   const size_t m = width();
   Answer found = answer(kept);
-  std::vector<double> relative = v;
-  for (size_t j = 0; j < m * scene.size(); j++) relative[j] -= bodies.flow[j];
-  scene.to_atoms((int) m, relative.data(), [&](int i, const double *now) {
+  double relative[6];
+  const auto at = [&](size_t k) {
+    for (size_t d = 0; d < m; d++) relative[d] = v[m * k + d] - bodies.flow[m * k + d];
+    return (const double *) relative;
+  };
+  scene.some_to_atoms((int) m, at, [&](int i, const double *now) {
     double *row = memory->rows.writable(i);
     for (size_t d = 0; d < m; d++) {
       double &last = row[State::at(State::VPRIME, d)];
@@ -243,16 +246,14 @@ void Guess::turn(int i, const double R[9])
 
 // --- of shells, forces of their points ---------------------------------------------------------------
 
-/* l [3 points] of this rank's rows, in space, from those in the axes of the shells, or back: spheres that
- * are free do not turn */
-void Guess::turn_points(std::vector<double> &of_points, bool back) const
+/* Forces on the n points of the sphere of row k, in space from those in the axes of its shell, or back: spheres
+ * that are free do not turn */
+void Guess::turn_points(size_t k, int n, bool back, double *l) const
 {
-  const int *first = shells.first_of_rows();
-  for (size_t k = scene.lone(); k < (size_t) scene.size(); k++)
-    for (size_t p = first[k]; p < (size_t) first[k + 1]; p++) {
-      const double was[3] = {of_points[3 * p], of_points[3 * p + 1], of_points[3 * p + 2]};
-      (back ? sd_multiply3t : sd_multiply3)(shells.turns() + 9 * k, was, &of_points[3 * p]);
-    }
+  for (int p = 0; p < n && k >= (size_t) scene.lone(); p++, l += 3) {
+    const double was[3] = {l[0], l[1], l[2]};
+    (back ? sd_multiply3t : sd_multiply3)(shells.turns() + 9 * k, was, l);
+  }
 }
 
 /* As the last solve left them (line 0), or on the line through the last two (1); 0 where there are
@@ -272,7 +273,8 @@ std::vector<double> Guess::recall_points(double line) const
       return kinds[k] == kind ? &found_then[3 * (size_t) first[k]] : nullptr;
     });
   }
-  turn_points(found_then, false);
+  for (size_t k = scene.lone(); k < (size_t) scene.size(); k++)
+    turn_points(k, shells.points_of_row(k), false, &found_then[3 * (size_t) first[k]]);
   return found_then;
 }
 
@@ -280,13 +282,17 @@ void Guess::keep_points(const std::vector<double> &l, double kept)
 {
   if (memory->shell_points == 0) return;
   const int *first = shells.first_of_rows(), *kinds = shells.kinds_of_rows();
-  std::vector<double> of_points = l;
-  turn_points(of_points, true);
   Answer found = answer(kept);
   for (int kind = 0; kind < shells.kinds(); kind++) {
     const int n = shells.model(kind).n;
-    const auto at = [&](size_t k) {
-      return kinds[k] == kind ? &of_points[3 * (size_t) first[k]] : nullptr;
+    std::vector<double> turned(3 * n);
+    const auto at = [&](size_t k) -> const double * {
+      if (kinds[k] != kind) return nullptr;
+      const double *row = &l[3 * (size_t) first[k]];
+      if (k < (size_t) scene.lone()) return row;
+      std::copy_n(row, 3 * n, turned.data());
+      turn_points(k, n, true, turned.data());
+      return turned.data();
     };
     scene.some_to_atoms(3 * n, at, [&](int i, const double *row) {
       const auto of = memory->writable_points(i, kind, n);

@@ -80,7 +80,7 @@ class Guess : protected LAMMPS_NS::Pointers {
   std::vector<double> recall_spheres(double line) const;
   void keep_spheres(const std::vector<double> &l, double kept);
   void keep_points(const std::vector<double> &l, double kept);
-  void turn_points(std::vector<double> &l, bool back) const;
+  void turn_points(size_t k, int n, bool back, double *l) const;
 };
 
 }    // namespace StokesDyn

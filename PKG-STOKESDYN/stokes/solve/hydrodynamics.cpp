@@ -33,6 +33,7 @@ Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
     bodies(voice, scene, ambient, rigid, clump_poses, given, lubrication),
     solver(lmp, scene, bodies, ambient, shells, settings), guard(voice)
 {
+  scene.idle = &solver.idle();
 }
 
 Hydrodynamics *Hydrodynamics::of(LAMMPS *lmp)

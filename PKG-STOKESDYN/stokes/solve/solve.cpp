@@ -54,7 +54,6 @@ sd_status Solve::solve_bodies(const How &how, Guess::Start start, sd_solve_repor
   V.resize(6 * sd_bodies_count(&A) + 6);
   v.resize(sd_bodies_loads(&A) + 6);
   exerted.resize(sd_bodies_loads(&A) + 6);
-  work.resize(sd_bodies_work(&A));
   const double *given = bodies.velocities.empty() ? nullptr : bodies.velocities.data();
   const sd_bodies_problem problem = {bodies.u.data(), bodies.F.data(), given,
                                      start.warm,      how.tolerance,   how.max_iter};
@@ -62,7 +61,7 @@ sd_status Solve::solve_bodies(const How &how, Guess::Start start, sd_solve_repor
   v_with_l = std::move(start.v);
   const sd_bodies_answer answer = {l.data(), v_with_l.data(), V.data(), v.data(), exerted.data()};
   sd_bodies_report made = {};
-  const sd_status status = sd_bodies_solve(&A, &problem, &answer, work.data(), &made);
+  const sd_status status = sd_bodies_solve(&A, &problem, &answer, at_least(sd_bodies_work(&A), work), &made);
   fail_if_alone(Voice(lmp, StokesSettings::COMMAND).at_step(), status);
   report = {};
   report.iterations = report.products = made.products;

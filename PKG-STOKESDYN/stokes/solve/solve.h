@@ -106,6 +106,9 @@ class Solve : protected LAMMPS_NS::Pointers {
   /* The rows of spheres that are points, for the solvers of these; of shells their drags alone count */
   sd_system system();
 
+  /* Room of a solve, which others may use between two of them */
+  std::vector<double> &idle() { return work; }
+
   double memory_usage() const;
 
  private:

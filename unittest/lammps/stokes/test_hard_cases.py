@@ -234,6 +234,31 @@ def test_memory_of_a_chain_of_4000(simulation, words):
     assert sim.residual <= 0.1
 
 
+@pytest.mark.hard_case("memory of 4000 shells with films")
+def test_memory_of_4000_shells_with_films(simulation):
+    """Vectors of a solve are the largest part: two more doubles per coordinate of a point are 0.6 kB per sphere."""
+    sim = simulation().commands("""
+        units lj
+        atom_style sphere
+        atom_modify sort 0 0
+        plugin load stokesdynplugin.so
+        lattice fcc 0.0716
+        region box block 0 10 0 10 0 10
+        create_box 1 box
+        create_atoms 1 box
+        set group all diameter 2.0 density 1.0
+        displace_atoms all random 0.05 0.05 0.05 5
+        pair_style stokes_dynamics cut_off_distance inf visc 1.0 algorithm 2 multiblob 12 lubrication yes
+        pair_coeff * *
+        fix load all addforce 0 0 -1.0
+        fix move all stokes_dynamics/overdamped
+        timestep 1e-4
+        """)
+    growth = growth_of_memory(lambda: sim.command("run 3 post no")) / 4.0
+    note("kB per sphere", growth)
+    assert growth < 14.4
+
+
 @pytest.mark.hard_case("1 sphere selected of 100 000")
 @pytest.mark.parametrize("words", ["cut_off_distance inf", "cut_off_distance 3", "clumps_only yes",
                                    "cut_off_distance inf rotation yes", "cut_off_distance 3 taper wendland",

@@ -19,7 +19,7 @@ static long largest_body(const sd_bodies *A)
 
 long sd_bodies_work(const sd_bodies *A)
 {
-  return 6 * sd_bodies_unknowns(A) + 9 * 6 * (long) sd_bodies_count(A) + 12 * (long) A->spheres.n +
+  return 4 * sd_bodies_unknowns(A) + 9 * 6 * (long) sd_bodies_count(A) + 12 * (long) A->spheres.n +
       2 * largest_body(A) + 1;
 }
 
@@ -110,8 +110,9 @@ static void take_motion(sd_bodies_loop *c)
 static sd_status settle(sd_bodies_loop *c)
 {
   take_motion(c);
-  sd_bodies_move(c->A, sd_bodies_motion_of(c, c->v.z), c->on_spheres, c->rows);
-  for (long j = 0; j < sd_bodies_unknowns(c->A); j++) c->v.r[j] += c->rows[j];
+  double *moved = c->v.w;
+  sd_bodies_move(c->A, sd_bodies_motion_of(c, c->v.z), c->on_spheres, moved);
+  for (long j = 0; j < sd_bodies_unknowns(c->A); j++) c->v.r[j] += moved[j];
   return SD_OK;
 }
 
@@ -182,16 +183,16 @@ static sd_status finish(sd_bodies_loop *c, const sd_bodies_answer *answer)
 {
   const sd_bodies *A = c->A;
   const long rows = sd_bodies_unknowns(A), loads = sd_bodies_loads(A);
-  double *V = sd_bodies_motion_of(c, c->v.x);
+  double *V = sd_bodies_motion_of(c, c->v.x), *l = c->v.r;
   leave_guess(c, answer);
   take_motion(c);
   memcpy(answer->V, V, sizeof(double) * (size_t) sd_bodies_motions(c));
   sd_rigid_move(&A->spheres, V, answer->v);
-  for (long j = 0; j < rows; j++) c->rows[j] = c->v.x[j] + c->v.z[j];
+  for (long j = 0; j < rows; j++) l[j] = c->v.x[j] + c->v.z[j];
   if (A->points.whole)
-    sd_rigid_collect(&A->points, c->rows, A->spheres.n, answer->exerted);
+    sd_rigid_collect(&A->points, l, A->spheres.n, answer->exerted);
   else
-    memcpy(answer->exerted, c->rows, sizeof(double) * (size_t) loads);
+    memcpy(answer->exerted, l, sizeof(double) * (size_t) loads);
   if (!A->tie) return SD_OK;
   const sd_rigid films = sd_bodies_films(A);
   double *there = c->on_spheres + loads;
@@ -210,12 +211,11 @@ sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
   if (status != SD_OK) return status;
   if (only) return sd_free_spheres_solve(A, problem, answer, report);
   const long rows = sd_bodies_unknowns(A), bodies = 6 * (long) sd_bodies_count(A), size = rows + bodies;
-  double *r = work + 3 * size, *by_bodies = r + 3 * rows, *on_spheres = by_bodies + 6 * bodies;
+  double *r = work + 3 * size, *by_bodies = r + rows, *on_spheres = by_bodies + 6 * bodies;
   sd_bodies_loop c = {
       .A = A,
       .problem = problem,
-      .v = {work, work + size, work + 2 * size, r, r + rows},
-      .rows = r + 2 * rows,
+      .v = {work, work + size, work + 2 * size, r, answer->l},
       .loads = by_bodies,
       .f = by_bodies + bodies,
       .bodies = by_bodies + 2 * bodies,

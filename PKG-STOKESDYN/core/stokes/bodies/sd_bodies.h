@@ -70,7 +70,7 @@ typedef struct {
 typedef struct {
   /* [points] forces on the fluid. Of bodies of which some are held they are as the last product left them:
    * as a guess they give the same V again. Where all are free they are a part of a step of the
-   * preconditioner further */
+   * preconditioner further. Scratch on the way, also where the solve fails */
   double *l;
   /* with a tie, [spheres]: the velocities that go with l in a guess */
   double *v_with_l;

@@ -20,12 +20,14 @@ typedef enum { GO_ON, SETTLE, BEGIN_ANEW } sd_bodies_verdict;
 typedef struct {
   const sd_bodies *A;
   const sd_bodies_problem *problem;
-  /* x = (l, V), z = pre(r, 0), p: [rows + 6 bodies]; r, w: [rows] */
+  /* x = (l, V), z = pre(r, 0), p: [rows + 6 bodies]; r, w: [rows]. w is the answer's l: x has the guess in
+   * that from the start on, and the next one is left there when w has been used. Before the loop w is
+   * scratch */
   sd_cg_vectors v;
   /* [6 bodies] the loads, and those with L V_inf, of the second line */
   double *loads, *f;
-  /* scratch: rows; spheres, twice; bodies, four times; of sd_bodies_alone */
-  double *rows, *on_spheres, *bodies, *alone;
+  /* scratch: spheres, twice; bodies, four times; of sd_bodies_alone */
+  double *on_spheres, *bodies, *alone;
   int shells, guess_is_new;
   sd_bodies_verdict verdict;
   double tie_tolerance;

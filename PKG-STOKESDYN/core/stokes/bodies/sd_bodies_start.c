@@ -14,17 +14,18 @@ static void hold(const sd_bodies_loop *c, double *V)
     if (sd_bodies_velocity_known(c->A, (int) (j / 6), j % 6)) V[j] = known[j];
 }
 
-/* x = pre(-u, F) of bodies for themselves, and their power; z is scratch */
+/* x = pre(-u, F) of bodies for themselves, and their power; z and w are scratch */
 static sd_status start_alone(sd_bodies_loop *c)
 {
   const sd_bodies *A = c->A;
   double s[3] = {0.0}, *V = sd_bodies_motion_of(c, c->v.x), *still = sd_bodies_motion_of(c, c->v.z);
+  double *moved = c->v.w;
   for (long j = 0; j < sd_bodies_unknowns(A); j++) c->v.r[j] = -c->problem->u[j];
   hold(c, V);
   sd_bodies_alone(A, c->v.r, NULL, c->f, c->alone, c->v.x, V);
-  sd_bodies_move(A, V, c->on_spheres, c->rows);
+  sd_bodies_move(A, V, c->on_spheres, moved);
   for (long j = 0; j < sd_bodies_unknowns(A); j++) {
-    const double u = c->problem->u[j], v = c->rows[j];
+    const double u = c->problem->u[j], v = moved[j];
     s[0] += c->v.x[j] * (v - u);
     s[1] += A->D[j] * (u * u + v * v);
   }

@@ -44,7 +44,8 @@ typedef struct {
 } sd_mobility_how;
 
 /* The spheres of one solve. All that it points to outlives the solve, but for the groups, which view NEAR
- * may make use of: of n_all spheres, and none has both some of the n and ghosts. */
+ * may make use of: of n_all spheres, and none has both some of the n and ghosts; and for spheres.x where the
+ * engine reads that once. */
 typedef struct {
   sd_mobility_how how;
   int n, n_all;
@@ -60,6 +61,8 @@ typedef struct {
   /* bytes of its own struct, zero before the first place */
   size_t state;
   sd_view view;
+  /* does it read where spheres stand in place() alone, and no more in products? */
+  int reads_places_once;
   /* the spheres have moved: once before the products of a solve. SD_OK, SD_ENOMEMORY or what a
    * function of sd_world said */
   sd_status (*place)(void *state, const sd_mobility_scene *scene);

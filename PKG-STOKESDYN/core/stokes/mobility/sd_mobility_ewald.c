@@ -191,6 +191,7 @@ const sd_mobility_engine sd_mobility_ewald = {
     .name = "Ewald sum",
     .state = sizeof(ewald),
     .view = SD_VIEW_NEAR,
+    .reads_places_once = 1,
     .place = me_place,
     .apply = me_apply,
     .free = me_release,

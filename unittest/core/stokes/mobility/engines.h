@@ -234,6 +234,7 @@ static inline void place_on(placed *p, const climber *row, const cast *s, rank *
     scene.pairs = &p->list.pairs;
   }
   assert_int_equal(sd_mobility_place(&p->m, p->h.engine, &scene), SD_OK);
+  for (int k = 0; k < 3 * r->n_all && p->h.engine->reads_places_once; k++) p->x[k] = 0.0;
 }
 
 static inline void place_free(placed *p, rank *r)
