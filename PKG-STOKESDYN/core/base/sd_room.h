@@ -1,5 +1,9 @@
 /* Arrays that grow. array is the address of a pointer of any type, NULL or from malloc; size is
- * that of an element in bytes. All return 1, or 0: out of memory. */
+ * that of an element in bytes. All return 1, or 0: out of memory.
+ *
+ * Of those of 1 MB and more Linux is asked for pages of 2 MB, where it gives them to who asks: a processor
+ * remembers where few pages are, and what one rank sends another on the same machine is looked up page by
+ * page. */
 #ifndef SD_ROOM_H
 #define SD_ROOM_H
 

@@ -1,4 +1,8 @@
 /* Arrays that grow. */
+#define _DEFAULT_SOURCE
+#include <string.h>
+#include <unistd.h>
+
 #include "check.h"
 
 #include "sd_room.h"
@@ -86,6 +90,40 @@ static void nothing_is_an_array_too(void **state)
   free(array);
 }
 
+/* Of the memory at this place Linux knows that its pages should be large; -1: this kernel has none */
+static int is_in_large_pages(const void *place)
+{
+  char line[512];
+  int here = 0, asked = 0;
+  FILE *maps = fopen("/proc/self/smaps", "r");
+  if (!maps || access("/sys/kernel/mm/transparent_hugepage/enabled", F_OK)) asked = -1;
+  while (maps && asked == 0 && fgets(line, sizeof(line), maps)) {
+    unsigned long from, to;
+    if (sscanf(line, "%lx-%lx ", &from, &to) == 2) here = (uintptr_t) place >= from && (uintptr_t) place < to;
+    if (here && strncmp(line, "VmFlags:", 8) == 0) asked = strstr(line, " hg") != NULL;
+  }
+  if (maps) fclose(maps);
+  return asked;
+}
+
+static void large_arrays_are_in_large_pages(void **state)
+{
+  (void) state;
+  const size_t page = (size_t) 2 << 20, most = 9 * page / 4;
+  char *array = NULL;
+  size_t room = 0;
+  assert_true(sd_reserve(&array, 1, most, &room));
+  if (is_in_large_pages(array) < 0) skip();
+  assert_int_equal((uintptr_t) array % page, 0);
+  assert_true(is_in_large_pages(array) && is_in_large_pages(array + 2 * page - 1));
+  assert_false(is_in_large_pages(array + most - 1)); /* a quarter of a page is not worth a whole one */
+  memset(array, 1, most);
+  assert_true(sd_grow(&array, 1, 8 * page));
+  assert_int_equal(array[most - 1], 1);
+  assert_true(is_in_large_pages(array + 4 * page));
+  free(array);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -94,6 +132,7 @@ int main(void)
       cmocka_unit_test(extended_array_keeps_what_it_holds_and_grows_by_a_quarter),
       cmocka_unit_test(reserved_array_moves_only_when_it_must),
       cmocka_unit_test(nothing_is_an_array_too),
+      cmocka_unit_test(large_arrays_are_in_large_pages),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
