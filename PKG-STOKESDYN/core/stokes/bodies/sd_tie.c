@@ -142,7 +142,7 @@ void sd_tie_free(sd_tie *t)
   sd_block_cholesky_free(&t->factor);
   void *const arrays[] = {t->spring, t->stiff, t->vectors, t->rows,
                           t->scale,  t->copy,  t->all,     t->copies,
-                          t->face,   t->faces_there, t->weight};
+                          t->face,   t->faces_there, t->weight, t->shared, t->edge};
   for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) free(arrays[k]);
   *t = (sd_tie){0};
 }

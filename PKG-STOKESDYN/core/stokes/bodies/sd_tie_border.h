@@ -27,4 +27,8 @@ void sd_tie_border_put_off(const sd_bodies *A);
  * SD_ENOMEMORY; mine or that of another; that of a function of sd_world */
 sd_status sd_tie_border_share(const sd_bodies *A, const double *place, double *ranks, sd_status mine);
 
+/* What all ranks together do to bodies at the border, A->tie->all: forth and back are each rank's own
+ * (sd_tie_factor.h). SD_OK or that of a function of sd_world. */
+sd_status sd_tie_border_meet(const sd_bodies *A);
+
 #endif

@@ -268,6 +268,8 @@ static sd_status factor_reserve(const sd_bodies *A, assembly *a)
   const int there = a->largest && a->mine && a->place && a->body && a->stands &&
       sd_reserve(&t->scale, number, 6 * all, &t->most_scales) &&
       sd_reserve(&t->weight, number, bodies, &t->most_weights) &&
+      sd_reserve(&t->shared, sizeof(int), bodies, &t->most_shared) &&
+      sd_reserve(&t->edge, sizeof(int), (size_t) A->spheres.n, &t->most_edges) &&
       sd_reserve(&t->all, number, 6 * all, &t->most_all) &&
       sd_reserve(&t->copy, sizeof(int), copies, &t->most_copies) &&
       sd_reserve(&t->copies, number, 6 * copies, &t->most_rows_there);
@@ -294,12 +296,16 @@ static sd_status weigh(const sd_bodies *A, const assembly *a)
 {
   sd_tie *t = A->tie;
   double severed = 0.0;
+  t->shares = t->edges = 0;
   for (int b = 0; b < sd_bodies_count(A); b++) {
     const double ranks = t->weight[b];
     const int tight = a->largest[b] >= stiff * stiff;
     t->weight[b] = 1.0 / sqrt(tight ? fmin(ranks, 2.0) : ranks);
+    if (ranks > 1.0) t->shared[t->shares++] = b;
     if (tight && ranks > 1.0) severed = 1.0;
   }
+  for (int i = 0; i < A->spheres.n; i++)
+    if (t->weight[sd_rigid_whole(&A->spheres, i)] < 1.0) t->edge[t->edges++] = i;
   const sd_status status = sd_world_sum(&t->L->world, &severed, 1);
   t->severed = t->L->world.ranks > 2 && severed > 0.0;
   return status;
@@ -327,55 +333,6 @@ sd_status sd_tie_factor(const sd_bodies *A)
 
 /* --- P^-1 --- */
 
-/* Of the other ranks' bodies, what the factor is applied to */
-static sd_status factor_fetch(const sd_bodies *A)
-{
-  const sd_tie *t = A->tie;
-  const sd_world *world = &t->L->world;
-  const long bodies = sd_bodies_count(A);
-  for (int i = 0; i < A->spheres.n; i++)
-    memcpy(t->rows + 6 * (long) i, t->all + 6 * (long) sd_rigid_whole(&A->spheres, i), 6 * sizeof(double));
-  const sd_status status = world->refresh(world->ctx, t->rows, t->copies, 6);
-  for (long o = 0; o < t->others; o++)
-    memcpy(t->all + 6 * (bodies + o), t->copies + 6 * (long) t->copy[o], 6 * sizeof(double));
-  return status;
-}
-
-/* And back what it gives them, to be added to theirs */
-static sd_status factor_give_back(const sd_bodies *A)
-{
-  const sd_tie *t = A->tie;
-  const sd_lubrication *L = t->L;
-  const long bodies = sd_bodies_count(A);
-  memset(t->copies, 0, sizeof(double) * 6 * (size_t) (L->n_all - L->n));
-  memset(t->rows, 0, sizeof(double) * 6 * (size_t) L->n);
-  for (long o = 0; o < t->others; o++)
-    memcpy(t->copies + 6 * (long) t->copy[o], t->all + 6 * (bodies + o), 6 * sizeof(double));
-  const sd_status status = L->world.reduce(L->world.ctx, t->copies, t->rows, 6);
-  for (int i = 0; i < A->spheres.n; i++)
-    for (int d = 0; d < 6; d++) t->all[6 * (long) sd_rigid_whole(&A->spheres, i) + d] += t->rows[6 * (long) i + d];
-  return status;
-}
-
-static void weigh_all(const sd_bodies *A)
-{
-  const sd_tie *t = A->tie;
-  for (long b = 0; b < sd_bodies_count(A); b++)
-    for (int d = 0; d < 6; d++) t->all[6 * b + d] *= t->weight[b];
-}
-
-/* What all ranks together do to bodies at the border */
-static sd_status meet_at_border(const sd_bodies *A)
-{
-  weigh_all(A);
-  sd_status status = factor_fetch(A);
-  if (status != SD_OK) return status;
-  sd_block_cholesky_middle(&A->tie->factor, A->tie->all);
-  status = factor_give_back(A);
-  weigh_all(A);
-  return status;
-}
-
 sd_status sd_tie_precondition(const sd_bodies *A, const double *r, double *z)
 {
   const sd_tie *t = A->tie;
@@ -385,7 +342,7 @@ sd_status sd_tie_precondition(const sd_bodies *A, const double *r, double *z)
   if (layered(A)) {
     memset(t->all + size, 0, sizeof(double) * 6 * (size_t) t->others);
     sd_block_cholesky_forth(&t->factor, t->all);
-    status = meet_at_border(A);
+    status = sd_tie_border_meet(A);
     sd_block_cholesky_back(&t->factor, t->all);
   } else
     sd_block_cholesky_apply(&t->factor, t->all);

@@ -21,8 +21,10 @@ typedef struct sd_tie {
   /* [6 (bodies + others)] 1 over the roots of the diagonal of H_0; 0: nobody is near to this body,
    * or this of its velocity is given */
   double *scale;
-  /* [bodies] W of sd_tie_factor.h */
+  /* [bodies] W of sd_tie_factor.h; [shares] bodies of this rank that others have too, where W is not 1, and
+   * [edges] their spheres */
   double *weight;
+  int *shared, *edge, shares, edges;
   /* [others] the copy, among the n_all - n of L, that stands for it */
   int *copy;
   /* X by pairs of L and those beyond, c; by spheres, L_ii and that of K^T X K together; what springs
@@ -30,8 +32,8 @@ typedef struct sd_tie {
   double *spring, *stiff, *face, *faces_there;
   /* scratch: by bodies, by bodies and others, by spheres, by copies */
   double *vectors, *all, *rows, *copies;
-  size_t most_scales, most_weights, most_copies, most_springs, most_stiff, most_vectors, most_all, most_rows,
-      most_rows_there, most_faces, most_faces_there;
+  size_t most_scales, most_weights, most_shared, most_edges, most_copies, most_springs, most_stiff, most_vectors,
+      most_all, most_rows, most_rows_there, most_faces, most_faces_there;
 } sd_tie;
 
 /* Is there an X? */
