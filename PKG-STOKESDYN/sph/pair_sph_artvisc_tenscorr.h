@@ -221,6 +221,11 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair> {
   std::vector<int> classes, phases;
   bool used(int itype) const;
   void look_at_densities(int n);
+  void pack_volumes();
+  void look_at_scene();
+  bool fills_space();
+  void look_at_rest();
+  void look_at_thickness();
   void look_at_walls();
   void tell_of_belts();
   void look_at_bodies();
@@ -244,6 +249,7 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair> {
   void close_sums();
   void sum_densities(int bit, bool shepard);
   void wall_particles();
+  void look_at_gravity() const;
   const double *spins_of_walls();
   void sums_of_other_fluids(const double *spins_of_walls);
   void wall_row(int i, const double *sums_i, double *row);

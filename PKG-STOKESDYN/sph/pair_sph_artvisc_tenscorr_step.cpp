@@ -41,6 +41,7 @@ void PairSph::compute(int eflag, int vflag)
     look_at_plane();
     look_at_idlers();
     look_at_fluids();
+    if (!resumes()) look_at_scene();
     if (wall) look_at_walls();
     if (wall) tell_of_belts();
     if (law != SD_SPH_NEWTON && !implicit) look_at_friction();
@@ -226,8 +227,7 @@ bool PairSph::moments(std::vector<double> &M)
   MPI_Allreduce(MPI_IN_PLACE, &current, 1, MPI_INT, MPI_MIN, world);
   if (!current) return false;
   prepare();
-  sd_sph_pack_x(particles.n, Sph::numbers(atom->x), nullptr, nullptr, 0.0, x4.data());
-  sd_sph_pack_volumes(&model, &particles, atom->rho, x4.data());
+  pack_volumes();
   M.assign(6 * (size_t) (particles.n + 1), 0.0);
   sd_sph_moments(&model, &pairs, &particles, M.data());
   reverse(M.data(), 6);

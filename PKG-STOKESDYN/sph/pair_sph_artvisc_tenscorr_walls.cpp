@@ -6,6 +6,7 @@
 #include "fix_sph_outlet.h"
 #include "fix_sph_settings.h"
 #include "fix_wall_sph.h"
+#include "gravity.h"
 #include "keywords.h"
 #include "ranks.h"
 #include "sd_sph_wall.h"
@@ -183,6 +184,7 @@ void PairSph::wall_particles()
   wall_rows.resize(4 * (size_t) (n + 1));
   if (wall) wall->gravity.find(lmp);
   for (auto *inlet : inlets) inlet->gravity.find(lmp);
+  look_at_gravity();
   for (auto *inlet : inlets)
     if (inlet->gives_pressure()) inlet->find_pressures();
   for (auto *outlet : outlets) outlet->find_pressures();
@@ -202,6 +204,20 @@ void PairSph::wall_particles()
     for (int d = 0; d < 3; d++) atom->vest[i][d] = atom->v[i][d] + row[1 + d];
   }
   pressures_of_all();
+}
+
+/* A variable may contain the acceleration of the wall. */
+void PairSph::look_at_gravity() const
+{
+  const auto look = [this](const Voice &of, const BodyForce &gravity) {
+    if (gravity.varies()) return;
+    compare_gravity(of, gravity.now(), [this](int i) { return used(atom->type[i]) && !is_wall(i); },
+                    {"water", "the pressure of the water does not go on as it should; give the numbers of fix "
+                              "gravity, or with an acceleration of the wall a variable"});
+  };
+  if (wall) look(wall->voice, wall->gravity);
+  for (auto *inlet : inlets)
+    if (!inlet->gives_pressure()) look(inlet->voice, inlet->gravity);
 }
 
 /* Two particles that stand in walls and open ends do no work on the flow, and at the back of an open

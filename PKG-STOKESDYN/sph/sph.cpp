@@ -107,6 +107,11 @@ void BodyForce::find(LAMMPS *lmp)
   for (int d = 0; d < 3; d++) g[d] = parts[d].evaluate(lmp);
 }
 
+bool BodyForce::varies() const
+{
+  return std::any_of(parts, parts + 3, [](const Field &part) { return part.is_variable(); });
+}
+
 WallFix::WallFix(LAMMPS *lmp, int narg, char **arg) : RowsFix(lmp, narg, arg)
 {
   dynamic_group_allow = 1;

@@ -98,6 +98,7 @@ class BodyForce {
   /* Of this step; all ranks. */
   void find(LAMMPS_NS::LAMMPS *lmp);
   const double *now() const { return g; }
+  bool varies() const;
 
  private:
   Field parts[3];

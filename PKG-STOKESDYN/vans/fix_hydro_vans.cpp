@@ -214,6 +214,7 @@ void FixHydroVans::post_force(int /*vflag*/)
   const Sums before = local;
   local = Sums();
   if (!set.has_grains()) return;
+  look_at_gravity();
   select(groupbit);
   if (set.law.added_mass > 0.0) find_accelerations(stepping, repeat);
   local.outside = forces(grains(), true);

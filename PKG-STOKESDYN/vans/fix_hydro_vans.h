@@ -107,6 +107,7 @@ class FixHydroVans : public RowsFix {
   void check_radius();
   void check_others() const;
   void look_at_neighbours();
+  void look_at_gravity() const;
   void tell_fall();
   void check_mesh();
   void tell_steps();

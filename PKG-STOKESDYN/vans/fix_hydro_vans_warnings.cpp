@@ -1,6 +1,7 @@
 /* Of fix hydro/vans: what a run may not do as one thinks, said once. */
 #include "fix_hydro_vans.h"
 
+#include "gravity.h"
 #include "neighbours_vans.h"
 
 #include "atom.h"
@@ -18,6 +19,15 @@ void FixHydroVans::look_at_neighbours()
 {
   neighbourhood.look(set.voice, vans_neighbours(), set.fluctuation == VansSettings::LANGEVIN ? LANGEVIN : 0u,
                      [this](int i) { return (unsigned) ((atom->mask[i] & groupbit) != 0); }, this);
+}
+
+/* The slope is told twice, and buoyancy is not to be taken off the weight. */
+void FixHydroVans::look_at_gravity() const
+{
+  if (std::any_of(set.gravity, set.gravity + 3, [](const Field &part) { return part.is_variable(); })) return;
+  compare_gravity(set.voice, set.law.g, [this](int i) { return (atom->mask[i] & groupbit) != 0; },
+                  {"grains", "they need the same slope as the water, and their full weight, since this fix adds the "
+                             "buoyancy; give both the same numbers"});
 }
 
 /* The law that holds unless one is chosen is made for beads of some millimetres in water. Where grains

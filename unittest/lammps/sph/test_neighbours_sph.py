@@ -153,3 +153,46 @@ def test_a_floor_that_no_fix_makes_a_wall_is_warned_of(tmp_path, change, steps, 
     """Its particles acted as water at rest, without a word. A run of no steps needs no integration."""
     error, warnings = said(tmp_path, [line.replace(*change) for line in scene()], steps)
     assert error == "" and (IDLE in warnings) == says
+
+
+TWICE, THIN = "create_atoms 1 region again", "region floor block 0 0.8 -0.1 0 INF INF units box"
+
+
+@pytest.mark.parametrize("old, new, filled, thin", [
+    ("", "", None, False), ("mass * 0.01", "mass * 0.001", 0.1, False), ("mass * 0.01", "mass * 0.02", 2.0, False),
+    ("mass * 0.01", f"region again block 0 0.8 0.04 0.6 INF INF units box\nlattice sq 100 origin 0.9 0.9 0\n{TWICE}\n"
+     "group ours type 1\ngroup sph type 1 2\nmass * 0.01\nset group all sph/rho 1", 2.0, False),
+    ("region floor block 0 0.8 -0.4 0 INF INF units box", THIN, None, True),
+    ("region floor block 0 0.8 -0.4 0 INF INF units box", THIN.replace("0.1", "0.3"), None, False)])
+def test_masses_that_do_not_fill_space_and_thin_walls_are_warned_of(tmp_path, old, new, filled, thin):
+    """The mass of another spacing, two lattices in one place, a floor of one row: they ran without a word."""
+    lines = [line for of in scene() for line in (of.replace(old, new) if old else of).split("\n")]
+    error, warnings = said(tmp_path, lines)
+    said_so = re.search(r"volumes of particles, mass over density, fill (\S+) of the space in place of 1", warnings)
+    assert not error and bool(said_so) == bool(filled), warnings
+    assert not filled or abs(float(said_so[1]) / filled - 1) < 0.1
+    assert ("the wall is thin" in warnings and "the first is atom 1, see its other" in warnings) == thin, warnings
+
+
+@pytest.mark.parametrize("rho, says", [(1, False), (0.9, False), (1000, True), (0.7, True)])
+def test_densities_far_from_that_at_rest_are_warned_of(tmp_path, rho, says):
+    """In other units than the equation of state, with masses that fit them: LAMMPS lost atoms, and no more was said."""
+    lines = [line.replace("sph/rho 1", f"sph/rho {rho}").replace("mass * 0.01", f"mass * {0.01 * rho}")
+             for line in scene()]
+    error, warnings = said(tmp_path, lines)
+    told = f"the densities of the fluid of fix eos are {rho} times its rho0"
+    assert not error and (told in warnings) == says and "volumes of particles" not in warnings, (error, warnings)
+
+
+FALL, PUSH = "fix fall ours gravity 1 vector 0 -1 0", "fix push ours addforce 0.01 0 0"
+
+
+@pytest.mark.parametrize("gravity, more, says", [
+    ("", [FALL], True), ("gravity 0 1 0", [FALL], True), ("gravity 0 -1 0", [FALL], False),
+    ("gravity 0 -1 0", [PUSH], False), ("gravity 0.2 -1 0", [FALL, PUSH], False),
+    ("gravity 0 v_g 0", ["variable g equal -2", FALL], False), ("", [FALL.replace("ours", "walls")], False)])
+def test_a_wall_that_is_told_another_gravity_is_warned_of(tmp_path, gravity, more, says):
+    """Water sank into its floor without a word, or rose from it."""
+    lines = [f"{line} {gravity}" if line.startswith("fix floor") else line for line in scene()]
+    error, warnings = said(tmp_path, lines + more, 2)
+    assert error == "" and ("keyword gravity has the numbers" in warnings) == says, warnings

@@ -115,6 +115,14 @@ def test_a_river_keeps_its_depth_and_its_speed():
     lmp.close()
 
 
+@pytest.mark.parametrize("gravity, says", [("gravity 0 -1 0", 0), ("gravity 0 -2 0", 1), ("", 1)])
+def test_an_inlet_that_is_told_another_gravity_is_warned_of(tmp_path, gravity, says):
+    """Its own, and not that of the floor, which is right."""
+    done = mpirun(1, STILL.replace("velocity 0.5 gravity 0 -1 0", "velocity 0.5 " + gravity) + "run 2\n", tmp_path)
+    assert done.returncode == 0 and done.stdout.count("keyword gravity has the numbers") == says, done.stdout
+    assert done.stdout.count("Fix sph/inlet: keyword gravity has") == says, done.stdout
+
+
 def test_open_ends_on_any_number_of_ranks_and_over_restarts(tmp_path):
     scene = PIPE + "variable u atom 0.8+0.4*sin(2*PI*y/0.6)\n" + OPEN.format("v_u")
     dump = "dump d all custom 200 %s.dump.* x y vx vy f_eos\ndump_modify d format float %%.17g\nrun %d post no\n"

@@ -247,3 +247,33 @@ def test_a_grain_hangs_where_adhesion_bears_its_weight_in_water(tmp_path, law, p
     done = run_lmp(tmp_path, STICK, variables=[("bond", bond), ("law", law), ("pull", pull)])
     height = float(done.stdout.split("\nheight ")[1].split()[0])
     assert (abs(height - 0.018) < 1e-6) == hangs and (height < 0.01) != hangs
+
+
+@pytest.mark.parametrize("weight, says", [
+    ("fix g all gravity 9.81 vector 0.05 0 -1", False), ("fix g all gravity 9.81 vector 0 0 -1", True),
+    ("fix g all gravity 5.886 vector 0.05 0 -1", True), ("", False), ("fix g one gravity 9.81 vector 0 0 -1", False),
+    ("fix g all gravity 9.81 vector 0 0 -1\nfix x all addforce 1e-3 0 0", False)])
+def test_a_weight_that_is_not_that_of_the_stream_is_warned_of(tmp_path, weight, says):
+    """A flume whose grains lie level, or whose buoyancy is taken off their weight and comes again by the fix, ran
+    without a word. A weight with other forces, of some grains alone or of none may be meant."""
+    done = run_lmp(tmp_path, f"""plugin load stokesdynplugin.so
+units si
+atom_style sphere
+boundary p p f
+region box block 0 0.1 0 0.1 -1 1 units box
+create_box 1 box
+create_atoms 1 single 0.05 0.05 0.5
+create_atoms 1 single 0.05 0.05 0.8
+set group all diameter 0.006 density 2500
+group one id 1
+pair_style zero 0.01
+pair_coeff * *
+fix s all hydro/vans 1 mesh 100 0.02 -1 fluid 1000 0.001 gravity 0.49 0 -9.8 couple none stream rest
+{weight}
+fix m all nve/sphere
+timestep 1e-6
+run 2
+run 2
+""")
+    said = "keyword gravity has the numbers 0.49 0 -9.8, and fix gravity pulls the grains with"
+    assert done.returncode == 0 and done.stdout.count(said) == 2 * says, done.stdout + done.stderr
