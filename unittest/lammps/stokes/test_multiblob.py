@@ -2,6 +2,7 @@
 import csv
 import os
 import pathlib
+import re
 import sys
 
 import numpy as np
@@ -153,6 +154,18 @@ def test_ewald_sums_in_open_space_are_all_pairs(simulation):
         sim = fall(simulation, spheres, columns(rows, "Fx Fy Fz"), f"12 relative_tolerance 1e-9 far_field {way}")
         found.append(sim.v)
     assert off(*found) < 1e-7
+
+
+def test_the_far_field_tolerance_is_that_of_spheres(simulation, tmp_path):
+    """Sums over 12 points of each are those of as many spheres of their radius, to sqrt(12) 0.5623 tolerances."""
+    sites, parts = 3.75 * (np.indices((8, 8, 8)).reshape(3, -1).T + 0.5), []
+    for every, a, style, tolerance in ((12, 1.0, "multiblob 12", 1e-3), (1, 0.5623, "", 1e-3 * np.sqrt(12) * 0.5623)):
+        log = tmp_path / str(every)
+        words = f"cut_off_distance inf visc 1 algorithm 2 {style} far_field_tolerance {tolerance}"
+        simulation(Spheres(sites[:480:every], a), words, log=log, boundary="p p p", box=[(0.0, 30.0)] * 3).run().close()
+        said = re.search(r"Far field .* splitting parameter (\S+), near part up to ([^;]+);", log.read_text())
+        parts.append([float(number) for number in said.groups()])
+    assert parts[0] == pytest.approx(parts[1], rel=1e-3)
 
 
 @pytest.mark.parametrize("clumps", ["", "rigid_clumps yes"])
