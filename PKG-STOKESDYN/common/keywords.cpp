@@ -45,22 +45,34 @@ std::string printable(const std::string &text)
   return out;
 }
 
+/* Where a rank ends by MPI_Abort, its own or another's, what buffers hold is lost: the message, where the output is a
+ * file or a pipe. */
+static void flush_output(LAMMPS *lmp)
+{
+  if (lmp->screen) fflush(lmp->screen);
+  if (lmp->logfile) fflush(lmp->logfile);
+}
+
 void fail(LAMMPS *lmp, const std::string &message)
 {
   // The std::string overload: no fmt types among our symbols, and no fmt in the message.
-  lmp->error->all(FLERR, printable(message));
+  try {
+    lmp->error->all(FLERR, printable(message));
+  } catch (...) {
+    flush_output(lmp);
+    throw;
+  }
   abort();    // error->all does not return
 }
 
 void fail_one(LAMMPS *lmp, const std::string &message)
 {
-  // LAMMPS ends by MPI_Abort, which drops what the buffers hold: the message, where the output is a file or a pipe.
-  // What another rank than 0 prints goes through a pipe of mpirun, which may drop it as well: mpirun gets time to read.
+  // LAMMPS ends by MPI_Abort. What another rank than 0 prints goes through a pipe of mpirun, which may drop it as well:
+  // mpirun gets time to read.
   try {
     lmp->error->one(FLERR, printable(message));
   } catch (...) {
-    if (lmp->screen) fflush(lmp->screen);
-    if (lmp->logfile) fflush(lmp->logfile);
+    flush_output(lmp);
     if (lmp->comm->nprocs > 1) std::this_thread::sleep_for(std::chrono::milliseconds(300));
     throw;
   }

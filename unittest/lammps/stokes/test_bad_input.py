@@ -1,10 +1,12 @@
 """Bad input: each case has its own error, which names the command, the keyword and the value."""
 import re
+import subprocess
 
 import numpy as np
 import pytest
 
 import model
+from host import PATIENCE, environment, lmp_program, mpirun
 from system import LammpsError, Spheres, dump_lines, input_lines, largest_difference, lmp, read_dump
 
 ETA, A = 1.3, 0.7
@@ -358,6 +360,19 @@ def test_failed_solve_stops_all_ranks(tmp_path, words, text):
     lines = input_lines(Spheres(x, A, (0, 0, 0.3)), words, tmp_path / "data", box=BOX)
     ended = lmp(tmp_path, lines + ["run 0"], ranks=2, succeed=False)
     assert ended.code != 0 and f"{PAIR}: step 0: algorithm" in ended.log and text in ended.log
+
+
+@pytest.mark.ranks(2)
+def test_a_partition_that_fails_has_the_error_in_its_log(tmp_path):
+    """It ends all others by MPI_Abort, with which what is still in a buffer is lost."""
+    lines = input_lines(three(), "cut_off_distance inf visc ${viscosity}", tmp_path / "data", box=BOX,
+                        before_pair="variable viscosity world -1 1.3")
+    (tmp_path / "in").write_text("\n".join(lines + ["run 0"]) + "\n")
+    ended = subprocess.run([*mpirun(2), lmp_program(), "-partition", "2x1", "-in", "in", "-log", "log", "-nocite"],
+                           cwd=tmp_path, env=environment(), stdin=subprocess.DEVNULL, capture_output=True,
+                           timeout=PATIENCE)
+    assert ended.returncode != 0
+    assert f"ERROR: {PAIR}: keyword visc" in (tmp_path / "log.0").read_text()
 
 
 @pytest.mark.parametrize("words", ["cut_off_distance inf visc -1", "cut_off_distance inf visc 1.3 algorithm 3",
