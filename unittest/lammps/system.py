@@ -14,6 +14,14 @@ from host import PATIENCE, environment, lmp_program, mpirun
 DENSITY = 1.7
 PLUGIN = "stokesdynplugin.so"
 
+
+def there(path):
+    """The path of a plugin that a build makes for tests alone. Of one that is not there LAMMPS says so much in passing,
+    and ends with an error about the first command that needs it."""
+    assert os.path.isfile(path), f"{path} is missing: build with cmake -D STOKESDYN_TESTS=ON"
+    return path
+
+
 # What the runs of a test said, for the table of hard cases (conftest.py): (kind, value), kind one of iterations,
 # residual, error (of the forces) and says.
 notes = []

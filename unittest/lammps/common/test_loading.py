@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from system import environment, lmp
+from system import environment, lmp, there
 
 pytestmark = pytest.mark.loader
 BUILD = os.environ["LAMMPS_PLUGIN_PATH"]
@@ -49,7 +49,7 @@ def test_loading_says_one_line_with_the_version(tmp_path):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_another_lammps_is_refused_with_both_versions_and_nothing_is_registered(tmp_path, ranks):
-    ended = lmp(tmp_path, [f"plugin load {WRONG}", "plugin list"], ranks=ranks, succeed=False)
+    ended = lmp(tmp_path, [f"plugin load {there(WRONG)}", "plugin list"], ranks=ranks, succeed=False)
     assert len(re.findall(r"ERROR: stokesdynplugin.so is not loaded: it was built for LAMMPS .*19990101.*, "
                           r"this is LAMMPS \d{8}",
                           ended.text)) == 1
@@ -109,7 +109,7 @@ def test_the_mpirun_of_another_mpi_is_refused_with_the_way_out(tmp_path):
 
 
 def test_another_lammps_is_refused_and_the_right_plugin_still_loads(tmp_path):
-    text = lmp(tmp_path, [f"plugin load {WRONG}", "plugin load stokesdynplugin.so", "plugin list"],
+    text = lmp(tmp_path, [f"plugin load {there(WRONG)}", "plugin load stokesdynplugin.so", "plugin list"],
                succeed=False).text
     assert "pair style plugin stokes_dynamics" in text
 

@@ -6,7 +6,7 @@ import re
 import pytest
 
 from neighbour_tables import KINDS, PACKAGE, ROW, joined
-from system import LammpsError, lmp
+from system import LammpsError, lmp, there
 from test_loading import lammps_source
 
 OVERDAMPED = "fix move ours stokes_dynamics/overdamped"
@@ -55,7 +55,8 @@ def prepared(before, move=OVERDAMPED, **more):
 
 
 # styles that the LAMMPS of the set-up lacks, by a plugin (styles_of_today.cpp)
-TODAY = f"plugin load {os.path.join(os.environ['LAMMPS_PLUGIN_PATH'], 'wrong', 'stylesoftoday.so')}"
+STYLES_OF_TODAY = os.path.join(os.environ["LAMMPS_PLUGIN_PATH"], "wrong", "stylesoftoday.so")
+TODAY = f"plugin load {STYLES_OF_TODAY}"
 
 
 def bonded(style, gamma):
@@ -169,6 +170,8 @@ def ids(case):
 
 def said(simulation, tmp_path, lines, steps=2):
     """The error and the warnings of a short run."""
+    if TODAY in lines:
+        there(STYLES_OF_TODAY)
     log = tmp_path / "log"
     sim = simulation(log=log)
     try:
