@@ -112,15 +112,16 @@ void Solve::draw(const Draw &draw)
   slip_left.assign(slip.size(), 0.0);
   load_left.assign(pushed.size(), 0.0);
   sd_status status = SD_OK;
+  const size_t by_bodies = (24 + SD_TIE_OF_BODY) * count, by_spheres = SD_TIE_OF_SPHERE * (size_t) scene.size();
+  std::vector<double> scratch(by_bodies + by_spheres + 1);
   if (A.tie) {
     status = bodies.draw_films(draw.of_films, pushed.data());
-    if (status == SD_OK) status = sd_tie_make(&A);
+    if (status == SD_OK) status = sd_tie_make(&A, {scratch.data(), &scratch[by_bodies]});
   }
   for (double &force : pushed) force *= draw.scale;
   find_followers();
   of_points.assign(6 * count + 6, 0.0);
   of_films.assign(6 * count + 6, 0.0);
-  std::vector<double> scratch(24 * count + 12 * (size_t) scene.size() + 1);
   const sd_drifter d = drifter();
   const sd_drifter_push all = {bodies.u.data(), slip.data(), bodies.F.data(), pushed.data(),
                                bodies.velocities.empty() ? nullptr : bodies.velocities.data(), 0.1 * draw.tolerance};

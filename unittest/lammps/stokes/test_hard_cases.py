@@ -236,7 +236,8 @@ def test_memory_of_a_chain_of_4000(simulation, words):
 
 @pytest.mark.hard_case("memory of 4000 shells with films")
 def test_memory_of_4000_shells_with_films(simulation):
-    """Vectors of a solve are the largest part: two more doubles per coordinate of a point are 0.6 kB per sphere."""
+    """Vectors of a solve are the largest part: two more doubles per coordinate of a point are 0.6 kB per sphere, as
+    are those of the films' own solve."""
     sim = simulation().commands("""
         units lj
         atom_style sphere
@@ -256,7 +257,7 @@ def test_memory_of_4000_shells_with_films(simulation):
         """)
     growth = growth_of_memory(lambda: sim.command("run 3 post no")) / 4.0
     note("kB per sphere", growth)
-    assert growth < 14.4
+    assert growth < 14.2
 
 
 @pytest.mark.hard_case("1 sphere selected of 100 000")

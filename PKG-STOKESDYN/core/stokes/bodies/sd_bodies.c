@@ -17,10 +17,17 @@ static long largest_body(const sd_bodies *A)
   return A->points.width * m;
 }
 
+/* The scratch of a tie by bodies, where forces have fewer rows */
+static long beside_forces(const sd_bodies *A)
+{
+  const long wanted = SD_TIE_OF_BODY * (long) sd_bodies_count(A);
+  return A->tie && sd_bodies_unknowns(A) < wanted ? wanted : 0;
+}
+
 long sd_bodies_work(const sd_bodies *A)
 {
-  return 4 * sd_bodies_unknowns(A) + 9 * 6 * (long) sd_bodies_count(A) + 12 * (long) A->spheres.n +
-      2 * largest_body(A) + 1;
+  return 4 * sd_bodies_unknowns(A) + 9 * 6 * (long) sd_bodies_count(A) + SD_TIE_OF_SPHERE * (long) A->spheres.n +
+      2 * largest_body(A) + beside_forces(A) + 1;
 }
 
 static sd_status bodies_precondition(void *ctx, const double *r, double *z)
@@ -220,15 +227,16 @@ sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
       .f = by_bodies + bodies,
       .bodies = by_bodies + 2 * bodies,
       .on_spheres = on_spheres,
-      .alone = on_spheres + 12 * (long) A->spheres.n,
+      .alone = on_spheres + SD_TIE_OF_SPHERE * (long) A->spheres.n,
       .shells = sd_bodies_shells(A),
       .guess_is_new = problem->warm,
       .report = report,
   };
+  if (beside_forces(A) > 0) c.tied = c.alone + 2 * largest_body(A);
   *report = (sd_bodies_report){.curvature = 1.0};
   memset(work, 0, sizeof(double) * (size_t) (2 * size));
   if (problem->warm) memcpy(c.v.x, answer->l, sizeof(double) * (size_t) rows);
-  if (A->tie && (status = sd_tie_make(A)) != SD_OK) return status;
+  if (A->tie && (status = sd_tie_make(A, sd_bodies_lend(&c, c.v.p))) != SD_OK) return status;
   take_loads(&c);
   status = problem->warm ? sd_bodies_start_warm(&c, answer->v_with_l) : sd_bodies_start_cold(&c);
   if (status == SD_OK) status = bodies_iterate(&c);

@@ -33,7 +33,7 @@ sd_status sd_bodies_pre(sd_bodies_loop *c, const double *r, const double *f, int
   if (r) sd_bodies_alone_bear(A, r, c->alone, bears);
   for (long j = 0; j < size; j++) load[j] = (f ? f[j] : 0.0) - (r ? bears[j] : 0.0);
   memcpy(tied, V, sizeof(double) * (size_t) size);
-  const sd_status status = sd_tie_solve(A, load, r, c->tie_tolerance, moved, tied, borne);
+  const sd_status status = sd_tie_solve(A, load, r, c->tie_tolerance, moved, sd_bodies_lend(c, l), tied, borne);
   if (status != SD_OK) return status;
   for (long j = 0; j < size; j++) load[j] = (f ? f[j] : 0.0) - borne[j];
   sd_bodies_alone(A, r, r ? bears : NULL, load, c->alone, l, V);

@@ -4,6 +4,7 @@
 
 #include "sd_bodies.h"
 #include "sd_cg.h"
+#include "sd_tied.h"
 
 SD_BEGIN_C
 
@@ -28,6 +29,8 @@ typedef struct {
   double *loads, *f;
   /* scratch: spheres, twice; bodies, four times; of sd_bodies_alone */
   double *on_spheres, *bodies, *alone;
+  /* [SD_TIE_OF_BODY bodies] scratch of a tie; NULL: forces have as many rows, and lend theirs */
+  double *tied;
   int shells, guess_is_new;
   sd_bodies_verdict verdict;
   double tie_tolerance;
@@ -64,9 +67,15 @@ static inline double *sd_bodies_motion_of(const sd_bodies_loop *c, double *vecto
   return vector + sd_bodies_unknowns(c->A);
 }
 
+/* Scratch of a tie while forces l [rows], and on_spheres, hold nothing */
+static inline sd_tie_room sd_bodies_lend(const sd_bodies_loop *c, double *l)
+{
+  return (sd_tie_room){c->tied ? c->tied : l, c->on_spheres};
+}
+
 /* pre(r, f): l, and V, which holds velocities of the held bodies on entry (moved: not all 0) and 0
- * elsewhere. By the second line tied bodies bear L V less, whatever digits V has. SD_OK or what the tie
- * said. */
+ * elsewhere. l, and c->on_spheres, are the tie's scratch before. By the second line tied bodies bear L V
+ * less, whatever digits V has. SD_OK or what the tie said. */
 sd_status sd_bodies_pre(sd_bodies_loop *c, const double *r, const double *f, int moved, double *l, double *V);
 
 /* w = M' l - K V of p = (l, V), counted as a product; the loop is ctx. SD_OK or what the engine said. */

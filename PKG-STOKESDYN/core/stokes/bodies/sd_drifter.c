@@ -89,7 +89,8 @@ static sd_status bear_films(const sd_bodies *A, const double *v, double *on_sphe
 }
 
 /* v [6 bodies] += P^-1 load, of what is not given; work [12 bodies] */
-static sd_status add_response(const sd_bodies *A, double tolerance, double *load, double *work, double *v)
+static sd_status add_response(const sd_bodies *A, double tolerance, sd_tie_room room, double *load, double *work,
+                              double *v)
 {
   const long motions = 6 * (long) sd_bodies_count(A);
   double *z = work, *borne = z + motions;
@@ -100,7 +101,7 @@ static sd_status add_response(const sd_bodies *A, double tolerance, double *load
     if (!A->tie || !sd_tie_binds(A, (int) (j / 6))) v[j] += z[j];
   if (!A->tie) return SD_OK;
   memset(z, 0, sizeof(double) * (size_t) motions);
-  const sd_status status = sd_tie_solve(A, load, NULL, tolerance, 0, z, borne);
+  const sd_status status = sd_tie_solve(A, load, NULL, tolerance, 0, room, z, borne);
   for (long j = 0; j < motions && status == SD_OK; j++)
     if (sd_tie_binds(A, (int) (j / 6))) v[j] += z[j];
   return status;
@@ -112,7 +113,8 @@ sd_status sd_drifter_move(const sd_bodies *A, const sd_drifter *d, const sd_drif
   const int bodies = sd_bodies_count(A);
   const long motions = 6 * (long) bodies;
   double *load = work, *noise = load + motions, *on_spheres = noise + motions;
-  double *borne = on_spheres + 12 * (long) A->spheres.n;
+  double *borne = on_spheres + SD_TIE_OF_SPHERE * (long) A->spheres.n;
+  const sd_tie_room room = {borne + 2 * motions, on_spheres};
   sd_drifter_follow(A, d, push->u, of_points);
   memset(load, 0, sizeof(double) * (size_t) motions);
   if (push->F) sd_rigid_collect(&A->spheres, push->F, bodies, load);
@@ -123,7 +125,7 @@ sd_status sd_drifter_move(const sd_bodies *A, const sd_drifter *d, const sd_drif
   }
   keep_free(A, push->velocities, of_points);
   sd_status status = bear_films(A, of_points, on_spheres, borne, load);
-  if (status == SD_OK) status = add_response(A, push->tolerance, load, borne, of_points);
+  if (status == SD_OK) status = add_response(A, push->tolerance, room, load, borne, of_points);
   sd_drifter_follow(A, d, push->y, noise);
   for (long j = 0; j < motions; j++) of_points[j] += noise[j];
   memcpy(of_films, of_points, sizeof(double) * (size_t) motions);
@@ -131,7 +133,7 @@ sd_status sd_drifter_move(const sd_bodies *A, const sd_drifter *d, const sd_drif
   memset(load, 0, sizeof(double) * (size_t) motions);
   if (push->f) sd_rigid_collect(&A->spheres, push->f, bodies, load);
   status = bear_films(A, noise, on_spheres, borne, load);
-  return status == SD_OK ? add_response(A, push->tolerance, load, borne, of_films) : status;
+  return status == SD_OK ? add_response(A, push->tolerance, room, load, borne, of_films) : status;
 }
 
 sd_status sd_drifter_difference(const sd_bodies *A, const double *l, double part, double *work, double *slip,

@@ -21,6 +21,7 @@
 
 #include "sd_body.h"
 #include "sd_body_follow.h"
+#include "sd_tied.h"
 
 SD_BEGIN_C
 
@@ -39,7 +40,7 @@ void sd_drifter_spread(const sd_bodies *A, const sd_drifter *d, const double *v,
 /* Velocities of the fluid and random ones at the points, forces and random forces on the spheres
  * (NULL: 0); with a tie, where sd_tie_make has been, to this tolerance of sd_tie_solve. velocities [6 bodies]
  * of those that have a known one, NULL: they rest. v', v'' [6 bodies] out, velocities that are given among
- * them. work [24 bodies + 12 spheres]. SD_OK; that of sd_tie_solve. */
+ * them. work [(24 + SD_TIE_OF_BODY) bodies + SD_TIE_OF_SPHERE spheres]. SD_OK; that of sd_tie_solve. */
 typedef struct {
   const double *u, *y, *F, *f, *velocities;
   double tolerance;

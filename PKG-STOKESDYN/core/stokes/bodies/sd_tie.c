@@ -5,32 +5,28 @@
 
 #include "sd_bodies_alone.h"
 #include "sd_cg.h"
-#include "sd_room.h"
 #include "sd_tie_approach.h"
 #include "sd_tie_factor.h"
 
-/* Vectors of bodies: together as long as the blocks of these, which the factor is made of in their room */
-enum { MOST_PRODUCTS = 1000, VECTORS = 6 };
+/* SD_TIE_OF_BODY: vectors of conjugate gradients and one more; or the blocks that the factor is made of */
+enum { MOST_PRODUCTS = 1000, CG_VECTORS = SD_TIE_OF_BODY / 6 - 1 };
 
-sd_status sd_tie_make(const sd_bodies *A)
+sd_status sd_tie_make(const sd_bodies *A, sd_tie_room room)
 {
-  sd_tie *t = A->tie;
-  const size_t number = sizeof(double), bodies = (size_t) sd_bodies_count(A);
-  t->products = 0;
-  const int room = sd_reserve(&t->vectors, number, 6 * VECTORS * bodies, &t->most_vectors) &&
-      sd_reserve(&t->rows, number, 12 * (size_t) t->L->n, &t->most_rows) && sd_tie_approach_reserve(A);
-  sd_status status = sd_world_agree(&t->L->world, room ? SD_OK : SD_ENOMEMORY);
-  if (status == SD_OK) status = sd_tie_approach_make(A);
-  return status == SD_OK ? sd_tie_factor(A) : status;
+  A->tie->products = 0;
+  const int there = sd_tie_approach_reserve(A);
+  sd_status status = sd_world_agree(&A->tie->L->world, there ? SD_OK : SD_ENOMEMORY);
+  if (status == SD_OK) status = sd_tie_approach_make(A, room.spheres);
+  return status == SD_OK ? sd_tie_factor(A, room.bodies) : status;
 }
 
-/* out += sign K^T f of what spheres at the arms of K bear when they move with K V: (L + X), or L alone. v, f
- * [6 spheres]: scratch; by_bodies [6 bodies] */
+/* out += sign K^T f of what spheres at the arms of K bear when they move with K V: (L + X), or L alone. */
 static sd_status add_borne(const sd_bodies *A, const sd_rigid *K, int both, double sign, const double *V,
-                           double *by_bodies, double *out)
+                           sd_tie_room room, double *out)
 {
   sd_tie *t = A->tie;
-  double *v = t->rows, *f = v + 6 * (long) t->L->n;
+  double *v = room.spheres, *f = v + 6 * (long) t->L->n;
+  double *by_bodies = room.bodies + 6 * CG_VECTORS * (long) sd_bodies_count(A);
   sd_rigid_move(K, V, v);
   const sd_status status = both ? sd_lubrication_apply_both(t->L, t->stiff, t->spring, v, f)
                                 : sd_lubrication_apply(t->L, v, f);
@@ -43,28 +39,28 @@ static sd_status add_borne(const sd_bodies *A, const sd_rigid *K, int both, doub
 
 /* out = K^T (L + X) K V. Where films have arms of their own L has these, and X, which is of the points, those of
  * the points: their forces must add up to what is borne. */
-static sd_status resist(const sd_bodies *A, const double *V, double *out)
+static sd_status resist(const sd_bodies *A, const double *V, sd_tie_room room, double *out)
 {
   const sd_rigid films = sd_bodies_films(A);
-  double *by_bodies = A->tie->vectors + 6 * (VECTORS - 1) * (long) sd_bodies_count(A);
   memset(out, 0, sizeof(double) * 6 * (size_t) sd_bodies_count(A));
-  sd_status status = add_borne(A, &A->spheres, 1, 1.0, V, by_bodies, out);
+  sd_status status = add_borne(A, &A->spheres, 1, 1.0, V, room, out);
   if (!A->film_arm || status != SD_OK) return status;
-  status = add_borne(A, &A->spheres, 0, -1.0, V, by_bodies, out);
-  return status == SD_OK ? add_borne(A, &films, 0, 1.0, V, by_bodies, out) : status;
+  status = add_borne(A, &A->spheres, 0, -1.0, V, room, out);
+  return status == SD_OK ? add_borne(A, &films, 0, 1.0, V, room, out) : status;
 }
 
 typedef struct {
   const sd_bodies *A;
   double tolerance, enough;
   double *alone;
+  sd_tie_room room;
 } films;
 
 /* w = H p */
 static sd_status tie_apply(void *ctx, const double *p, double *w)
 {
   const films *s = ctx;
-  const sd_status status = resist(s->A, p, w);
+  const sd_status status = resist(s->A, p, s->room, w);
   if (status != SD_OK) return status;
   sd_bodies_alone_resist(s->A, p, s->alone);
   for (long j = 0; j < 6 * (long) sd_bodies_count(s->A); j++) w[j] += s->alone[j];
@@ -73,7 +69,8 @@ static sd_status tie_apply(void *ctx, const double *p, double *w)
 
 static sd_status tie_precondition(void *ctx, const double *r, double *z)
 {
-  return sd_tie_precondition(((films *) ctx)->A, r, z);
+  const films *s = ctx;
+  return sd_tie_precondition(s->A, r, s->room.spheres, z);
 }
 
 /* What V lacks after too many products is left to the loop. */
@@ -86,16 +83,17 @@ static sd_status tie_judge(void *ctx, const sd_cg_state *now, int *done)
 }
 
 /* borne = K^T (L + X) K V_held + K^T X r, what is so before anybody moves */
-static sd_status bear_before(const sd_bodies *A, const double *r, int moved, const double *V, double *borne)
+static sd_status bear_before(const sd_bodies *A, const double *r, int moved, const double *V, sd_tie_room room,
+                             double *borne)
 {
   const int bodies = sd_bodies_count(A);
   sd_status status = SD_OK;
   memset(borne, 0, sizeof(double) * 6 * (size_t) bodies);
   if (sd_tie_has_springs(A)) sd_tie_approach_see(A, r);
-  if (sd_tie_has_springs(A) && r) status = sd_tie_approach_push(A, NULL, borne);
+  if (sd_tie_has_springs(A) && r) status = sd_tie_approach_push(A, NULL, room.spheres, borne);
   if (!moved || status != SD_OK) return status;
-  double *by_held = A->tie->vectors;
-  status = resist(A, V, by_held);
+  double *by_held = room.bodies;
+  status = resist(A, V, room, by_held);
   for (long j = 0; j < 6 * (long) bodies; j++) borne[j] += by_held[j];
   return status;
 }
@@ -104,13 +102,12 @@ static sd_status bear_before(const sd_bodies *A, const double *r, int moved, con
  * and bodies without neighbours, is not the preconditioner's, and stays as it is. H_0 V_held loads
  * bodies that are spun, whose centres are free. */
 sd_status sd_tie_solve(const sd_bodies *A, const double *g, const double *r, double tolerance,
-                       int moved, double *V, double *borne)
+                       int moved, sd_tie_room room, double *V, double *borne)
 {
-  sd_tie *t = A->tie;
   const long size = 6 * (long) sd_bodies_count(A);
-  double *x = t->vectors;
+  double *x = room.bodies;
   const sd_cg_vectors v = {x, x + size, x + 2 * size, x + 3 * size, x + 4 * size};
-  films s = {A, tolerance, 0.0, borne};
+  films s = {A, tolerance, 0.0, borne, room};
   const sd_cg cg = {.size = size,
                     .paired = size,
                     .ctx = &s,
@@ -119,7 +116,7 @@ sd_status sd_tie_solve(const sd_bodies *A, const double *g, const double *r, dou
                     .judge = tie_judge,
                     .world = &A->world};
   sd_cg_state state;
-  sd_status status = bear_before(A, r, moved, V, borne);
+  sd_status status = bear_before(A, r, moved, V, room, borne);
   if (status != SD_OK) return status;
   memset(x, 0, sizeof(double) * (size_t) size);
   if (moved) sd_bodies_alone_resist(A, V, x);
@@ -129,7 +126,7 @@ sd_status sd_tie_solve(const sd_bodies *A, const double *g, const double *r, dou
   for (long j = 0; j < size; j++) V[j] += x[j];
   sd_bodies_alone_resist(A, V, borne);
   for (long j = 0; j < size; j++) borne[j] = g[j] - v.r[j] - borne[j];
-  return sd_tie_has_springs(A) ? sd_tie_approach_push(A, V, NULL) : SD_OK;
+  return sd_tie_has_springs(A) ? sd_tie_approach_push(A, V, room.spheres, NULL) : SD_OK;
 }
 
 void sd_tie_share(const sd_bodies *A, double *l)
@@ -140,8 +137,7 @@ void sd_tie_share(const sd_bodies *A, double *l)
 void sd_tie_free(sd_tie *t)
 {
   sd_block_cholesky_free(&t->factor);
-  void *const arrays[] = {t->spring, t->stiff, t->vectors, t->rows,
-                          t->scale,  t->copy,  t->all,     t->copies,
+  void *const arrays[] = {t->spring, t->stiff,       t->scale,  t->copy,   t->all, t->copies,
                           t->face,   t->faces_there, t->weight, t->shared, t->edge};
   for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) free(arrays[k]);
   *t = (sd_tie){0};

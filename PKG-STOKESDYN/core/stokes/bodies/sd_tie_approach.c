@@ -9,11 +9,13 @@
  * 0.60 from contact to a gap of 1; between 0.6 and 0.9 the products do not notice. */
 static const double of_strain = 0.75;
 
-/* B += c d d^T, on translations */
-static void add_square(double c, const double d[3], double B[36])
+/* B += c d d^T, xx yy zz xy xz yz */
+static void add_square(double c, const double d[3], double B[6])
 {
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) B[6 * p + q] += c * d[p] * d[q];
+  for (int e = 0; e < 3; e++) B[e] += c * d[e] * d[e];
+  B[3] += c * d[0] * d[1];
+  B[4] += c * d[0] * d[2];
+  B[5] += c * d[1] * d[2];
 }
 
 /* mine [n], L->others: does the sphere take part? Where all do, no rank has to be told. */
@@ -46,26 +48,26 @@ int sd_tie_approach_reserve(const sd_bodies *A)
   const size_t pairs = (size_t) (L->count + L->beyond), n = (size_t) L->n;
   const size_t width = (size_t) numbers_seen(A), others = (size_t) (L->n_all - L->n);
   return sd_reserve(&t->spring, sizeof(*t->spring), pairs + 1, &t->most_springs) &&
-      sd_reserve(&t->stiff, sizeof(double), 36 * (n + 1), &t->most_stiff) &&
+      sd_reserve(&t->stiff, sizeof(double), 6 * (n + 1), &t->most_stiff) &&
       sd_reserve(&t->face, sizeof(double), 2 * width * n + 1, &t->most_faces) &&
       sd_reserve(&t->faces_there, sizeof(double), width * others + 1, &t->most_faces_there);
 }
 
-sd_status sd_tie_approach_make(const sd_bodies *A)
+sd_status sd_tie_approach_make(const sd_bodies *A, double *mine)
 {
   sd_tie *t = A->tie;
   const sd_lubrication *L = t->L;
-  memcpy(t->stiff, L->diagonal, sizeof(double) * 36 * (size_t) L->n);
+  memset(t->stiff, 0, sizeof(double) * 6 * (size_t) L->n);
   memset(t->spring, 0, sizeof(*t->spring) * (size_t) (L->count + L->beyond));
   if (!sd_tie_has_springs(A)) return SD_OK;
-  const sd_status status = know_whole(A, t->rows);
+  const sd_status status = know_whole(A, mine);
   if (status != SD_OK) return status;
   for (long k = 0; k < L->count + L->beyond; k++) {
     const int i = L->pair[k][0], j = L->pair[k][1];
-    if (j == i || !takes_part(L, t->rows, i) || !takes_part(L, t->rows, j)) continue;
+    if (j == i || !takes_part(L, mine, i) || !takes_part(L, mine, j)) continue;
     t->spring[k] = L->model[k];
-    if (i < L->n) add_square(t->spring[k], L->link[k].d, t->stiff + 36 * (long) i);
-    if (j < L->n) add_square(t->spring[k], L->link[k].d, t->stiff + 36 * (long) j);
+    if (i < L->n) add_square(t->spring[k], L->link[k].d, t->stiff + 6 * (long) i);
+    if (j < L->n) add_square(t->spring[k], L->link[k].d, t->stiff + 6 * (long) j);
   }
   return SD_OK;
 }
@@ -129,12 +131,12 @@ static void push_bodies(const sd_bodies *A, double *on_spheres, double *f)
   sd_rigid_collect(&A->spheres, on_spheres, sd_bodies_count(A), f);
 }
 
-sd_status sd_tie_approach_push(const sd_bodies *A, const double *V, double *f)
+sd_status sd_tie_approach_push(const sd_bodies *A, const double *V, double *on_spheres, double *f)
 {
   const sd_tie *t = A->tie;
   const sd_world *world = &t->L->world;
   const int n = A->spheres.n, width = numbers_seen(A);
-  double *on_spheres = t->rows, *v = t->face, *pushed = pushed_of(A);
+  double *v = t->face, *pushed = pushed_of(A);
   if (V) sd_rigid_move(&A->spheres, V, on_spheres);
   for (long i = 0; V && i < n; i++)
     for (int d = 0; d < 3; d++) v[width * i + d] += on_spheres[6 * i + d];

@@ -30,13 +30,13 @@
 
 /* Room for where A->tie->L stands now; 0: there is none */
 int sd_tie_approach_reserve(const sd_bodies *A);
-/* In that room. On all ranks together. SD_OK; that of refresh. */
-sd_status sd_tie_approach_make(const sd_bodies *A);
+/* In that room; mine [spheres]: scratch. On all ranks together. SD_OK; that of refresh. */
+sd_status sd_tie_approach_make(const sd_bodies *A, double *mine);
 /* X (r + K V) by way of spheres, in three steps. The first takes r (rows; NULL: 0), the second V [6 bodies]
  * (NULL: 0), which adds to what was seen before: f [6 bodies] (NULL: not wanted) = K^T of X of that. The
- * third adds X of that to l (rows). SD_OK or that of refresh. */
+ * third adds X of that to l (rows). on_spheres [6 spheres]: scratch. SD_OK or that of refresh. */
 void sd_tie_approach_see(const sd_bodies *A, const double *r);
-sd_status sd_tie_approach_push(const sd_bodies *A, const double *V, double *f);
+sd_status sd_tie_approach_push(const sd_bodies *A, const double *V, double *on_spheres, double *f);
 void sd_tie_approach_add(const sd_bodies *A, double *l);
 
 #endif

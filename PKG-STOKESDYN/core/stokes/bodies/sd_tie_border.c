@@ -195,9 +195,9 @@ sd_status sd_tie_border_share(const sd_bodies *A, const double *place, double *r
 
 /* --- of the factor --- */
 
-static double *row_of_edge(const sd_bodies *A, int k)
+static double *row_of_edge(const sd_bodies *A, double *rows, int k)
 {
-  return A->tie->rows + 6 * (long) A->tie->edge[k];
+  return rows + 6 * (long) A->tie->edge[k];
 }
 
 static double *body_of_edge(const sd_bodies *A, int k)
@@ -207,32 +207,32 @@ static double *body_of_edge(const sd_bodies *A, int k)
 
 /* Of the other ranks' bodies, what the factor is applied to. A body that, by rounding, is near for one of two
  * ranks alone is 0 there, and nothing is taken back. */
-static sd_status fetch_others(const sd_bodies *A)
+static sd_status fetch_others(const sd_bodies *A, double *rows)
 {
   const sd_tie *t = A->tie;
   const sd_world *world = &t->L->world;
   const long bodies = sd_bodies_count(A);
-  memset(t->rows, 0, sizeof(double) * 6 * (size_t) t->L->n);
-  for (int k = 0; k < t->edges; k++) memcpy(row_of_edge(A, k), body_of_edge(A, k), 6 * sizeof(double));
-  const sd_status status = world->refresh(world->ctx, t->rows, t->copies, 6);
+  memset(rows, 0, sizeof(double) * 6 * (size_t) t->L->n);
+  for (int k = 0; k < t->edges; k++) memcpy(row_of_edge(A, rows, k), body_of_edge(A, k), 6 * sizeof(double));
+  const sd_status status = world->refresh(world->ctx, rows, t->copies, 6);
   for (long o = 0; o < t->others; o++)
     memcpy(t->all + 6 * (bodies + o), t->copies + 6 * (long) t->copy[o], 6 * sizeof(double));
   return status;
 }
 
 /* And back what it gives them, to be added to theirs */
-static sd_status give_back(const sd_bodies *A)
+static sd_status give_back(const sd_bodies *A, double *rows)
 {
   const sd_tie *t = A->tie;
   const sd_lubrication *L = t->L;
   const long bodies = sd_bodies_count(A);
   memset(t->copies, 0, sizeof(double) * 6 * (size_t) (L->n_all - L->n));
-  for (int k = 0; k < t->edges; k++) memset(row_of_edge(A, k), 0, 6 * sizeof(double));
+  for (int k = 0; k < t->edges; k++) memset(row_of_edge(A, rows, k), 0, 6 * sizeof(double));
   for (long o = 0; o < t->others; o++)
     memcpy(t->copies + 6 * (long) t->copy[o], t->all + 6 * (bodies + o), 6 * sizeof(double));
-  const sd_status status = L->world.reduce(L->world.ctx, t->copies, t->rows, 6);
+  const sd_status status = L->world.reduce(L->world.ctx, t->copies, rows, 6);
   for (int k = 0; k < t->edges; k++)
-    for (int d = 0; d < 6; d++) body_of_edge(A, k)[d] += row_of_edge(A, k)[d];
+    for (int d = 0; d < 6; d++) body_of_edge(A, k)[d] += row_of_edge(A, rows, k)[d];
   return status;
 }
 
@@ -243,13 +243,13 @@ static void weigh_shared(const sd_bodies *A)
     for (int d = 0; d < 6; d++) t->all[6 * (long) t->shared[k] + d] *= t->weight[t->shared[k]];
 }
 
-sd_status sd_tie_border_meet(const sd_bodies *A)
+sd_status sd_tie_border_meet(const sd_bodies *A, double *rows)
 {
   weigh_shared(A);
-  sd_status status = fetch_others(A);
+  sd_status status = fetch_others(A, rows);
   if (status != SD_OK) return status;
   sd_block_cholesky_middle(&A->tie->factor, A->tie->all);
-  status = give_back(A);
+  status = give_back(A, rows);
   weigh_shared(A);
   return status;
 }

@@ -28,7 +28,7 @@ void sd_tie_border_put_off(const sd_bodies *A);
 sd_status sd_tie_border_share(const sd_bodies *A, const double *place, double *ranks, sd_status mine);
 
 /* What all ranks together do to bodies at the border, A->tie->all: forth and back are each rank's own
- * (sd_tie_factor.h). SD_OK or that of a function of sd_world. */
-sd_status sd_tie_border_meet(const sd_bodies *A);
+ * (sd_tie_factor.h). rows [6 spheres]: scratch. SD_OK or that of a function of sd_world. */
+sd_status sd_tie_border_meet(const sd_bodies *A, double *rows);
 
 #endif

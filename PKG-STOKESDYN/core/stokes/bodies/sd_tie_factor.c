@@ -20,8 +20,7 @@ static const double weak = 0.8, drop = 0.1;
 static const double stiff = 12.0;
 
 typedef struct {
-  /* [36 bodies] blocks of H_ii, scaled, in the room of vectors that wait for a factor; [bodies and others]
-   * the square of the norm of its largest H_ij */
+  /* [36 bodies] blocks of H_ii, scaled; [bodies and others] the square of the norm of its largest H_ij */
   double *diagonal, *largest;
   /* of the spheres of this rank and of the copies [SD_PLACE]; of copies the body that each belongs to, among
    * those of the factor, -1: none; does it stand for its sphere, which may have more copies? */
@@ -97,6 +96,15 @@ static void factor_own_block(const sd_bodies *A, int b, double H[36])
   }
 }
 
+/* L_ii + X_ii of a sphere */
+static void films_on(const sd_tie *t, int i, double B[36])
+{
+  static const int kept[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  memcpy(B, t->L->diagonal + 36 * (long) i, 36 * sizeof(double));
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++) B[6 * p + q] += t->stiff[6 * (long) i + kept[p][q]];
+}
+
 /* Films on spheres, by bodies, then all in units of the drags. A body that nobody is near to is
  * taken out by a scale of 0, and so is what is given of one's velocity. */
 static void find_diagonal(const sd_bodies *A, assembly *a)
@@ -105,7 +113,7 @@ static void find_diagonal(const sd_bodies *A, assembly *a)
   for (int i = 0; i < A->spheres.n; i++) {
     const double *r = arm_of(A, a, i);
     double B[36], *to = a->diagonal + 36 * (long) sd_rigid_whole(&A->spheres, i);
-    memcpy(B, t->stiff + 36 * (long) i, sizeof(B));
+    films_on(t, i, B);
     if (has_arm(r)) move_to_centres(r, r, B);
     for (int e = 0; e < 36; e++) to[e] += B[e];
   }
@@ -257,7 +265,6 @@ static sd_status factor_reserve(const sd_bodies *A, assembly *a)
   const size_t bodies = (size_t) sd_bodies_count(A), number = sizeof(double);
   a->copies = layered(A) ? t->L->n_all - t->L->n : 0;
   const size_t all = bodies + (size_t) a->copies, copies = (size_t) a->copies;
-  a->diagonal = t->vectors;
   memset(a->diagonal, 0, 36 * bodies * number);
   a->largest = calloc(all + 1, number);
   a->mine = malloc(number * (SD_PLACE * (size_t) A->spheres.n + 1));
@@ -311,10 +318,10 @@ static sd_status weigh(const sd_bodies *A, const assembly *a)
   return status;
 }
 
-sd_status sd_tie_factor(const sd_bodies *A)
+sd_status sd_tie_factor(const sd_bodies *A, double *blocks)
 {
   const sd_world *world = &A->tie->L->world;
-  assembly a = {0};
+  assembly a = {.diagonal = blocks};
   sd_status status = sd_world_agree(world, factor_reserve(A, &a));
   if (status == SD_OK) find_diagonal(A, &a);
   if (status == SD_OK && layered(A)) status = tell_places(A, &a);
@@ -333,7 +340,7 @@ sd_status sd_tie_factor(const sd_bodies *A)
 
 /* --- P^-1 --- */
 
-sd_status sd_tie_precondition(const sd_bodies *A, const double *r, double *z)
+sd_status sd_tie_precondition(const sd_bodies *A, const double *r, double *rows, double *z)
 {
   const sd_tie *t = A->tie;
   const long size = 6 * (long) sd_bodies_count(A);
@@ -342,7 +349,7 @@ sd_status sd_tie_precondition(const sd_bodies *A, const double *r, double *z)
   if (layered(A)) {
     memset(t->all + size, 0, sizeof(double) * 6 * (size_t) t->others);
     sd_block_cholesky_forth(&t->factor, t->all);
-    status = sd_tie_border_meet(A);
+    status = sd_tie_border_meet(A, rows);
     sd_block_cholesky_back(&t->factor, t->all);
   } else
     sd_block_cholesky_apply(&t->factor, t->all);

@@ -22,10 +22,11 @@
 
 #include "sd_tied.h"
 
-/* Where A->tie->L stands. On all ranks together, which agree on failures. Status as of sd_tie_make. */
-sd_status sd_tie_factor(const sd_bodies *A);
-/* z = P^-1 r, by bodies; 0 for those that nobody is near to, and held ones. SD_OK; that of a
- * function of sd_world */
-sd_status sd_tie_precondition(const sd_bodies *A, const double *r, double *z);
+/* Where A->tie->L stands; blocks [36 bodies]: scratch. On all ranks together, which agree on failures.
+ * Status as of sd_tie_make. */
+sd_status sd_tie_factor(const sd_bodies *A, double *blocks);
+/* z = P^-1 r, by bodies; 0 for those that nobody is near to, and held ones. rows [6 spheres]:
+ * scratch. SD_OK; that of a function of sd_world */
+sd_status sd_tie_precondition(const sd_bodies *A, const double *r, double *rows, double *z);
 
 #endif

@@ -8,6 +8,12 @@
 
 SD_BEGIN_C
 
+/* Scratch that the caller lends, so many numbers of each body and each sphere; nothing is kept there. */
+enum { SD_TIE_OF_BODY = 36, SD_TIE_OF_SPHERE = 12 };
+typedef struct {
+  double *bodies, *spheres;
+} sd_tie_room;
+
 /* Zero-initialise, set L, whose rows are the spheres; sd_tie_free in the end. */
 typedef struct sd_tie {
   sd_lubrication *L;
@@ -27,13 +33,13 @@ typedef struct sd_tie {
   int *shared, *edge, shares, edges;
   /* [others] the copy, among the n_all - n of L, that stands for it */
   int *copy;
-  /* X by pairs of L and those beyond, c; by spheres, L_ii and that of K^T X K together; what springs
+  /* X by pairs of L and those beyond, c; by spheres, X_ii of translations, xx yy zz xy xz yz; what springs
    * see of spheres and do to them [2 9 spheres], [9 others], 6 where rows are spheres */
   double *spring, *stiff, *face, *faces_there;
-  /* scratch: by bodies, by bodies and others, by spheres, by copies */
-  double *vectors, *all, *rows, *copies;
-  size_t most_scales, most_weights, most_shared, most_edges, most_copies, most_springs, most_stiff, most_vectors,
-      most_all, most_rows, most_rows_there, most_faces, most_faces_there;
+  /* scratch: by bodies and others, by copies */
+  double *all, *copies;
+  size_t most_scales, most_weights, most_shared, most_edges, most_copies, most_springs, most_stiff, most_all,
+      most_rows_there, most_faces, most_faces_there;
 } sd_tie;
 
 /* Is there an X? */

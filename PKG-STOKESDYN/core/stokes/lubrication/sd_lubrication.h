@@ -109,8 +109,9 @@ void sd_lubrication_add_own(sd_lubrication *L, int i, const double B[36], const 
 void sd_lubrication_add_block(const sd_lubrication_link *l, double B[36]);
 /* out = L V, rows [6 n]: no aliasing. ctx is an sd_lubrication. SD_OK or that of refresh. */
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out);
-/* out = (L + X) V, X_ij = -c d d^T of each pair, c [count]; diagonal [36 n]: L_ii + X_ii */
-sd_status sd_lubrication_apply_both(const sd_lubrication *L, const double *diagonal, const double *c,
+/* out = (L + X) V, X of translations alone: X_ij = -c d d^T of each pair, c [count]; X_ii: own [6 n], xx yy
+ * zz xy xz yz. own and c NULL: 0 */
+sd_status sd_lubrication_apply_both(const sd_lubrication *L, const double *own, const double *c,
                                     const double *V, double *out);
 
 /* First moments of films, symmetric and traceless, xx yy zz xy xz yz: S [6 n] += half of that of

@@ -6,15 +6,15 @@
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
 {
   const sd_lubrication *L = ctx;
-  return sd_lubrication_apply_both(L, L->diagonal, NULL, V, out);
+  return sd_lubrication_apply_both(L, NULL, NULL, V, out);
 }
 
-sd_status sd_lubrication_apply_both(const sd_lubrication *L, const double *diagonal, const double *c,
+sd_status sd_lubrication_apply_both(const sd_lubrication *L, const double *own, const double *c,
                                     const double *V, double *out)
 {
   const sd_status status = fetch(L, V);
   if (status != SD_OK) return status;
-  SD_KERNELS_OF(sd_lubrication, plain, sd_isa_of(SD_ISA_BEST))->times(L, diagonal, c, V, out);
+  SD_KERNELS_OF(sd_lubrication, plain, sd_isa_of(SD_ISA_BEST))->times(L, own, c, V, out);
   return SD_OK;
 }
 

@@ -61,8 +61,7 @@ struct sd_lubrication_work {
 
 struct sd_lubrication_kernels {
   /* as sd_lubrication_apply_both, where the others' velocities are known */
-  void (*times)(const sd_lubrication *L, const double *diagonal, const double *c, const double *V,
-                double *out);
+  void (*times)(const sd_lubrication *L, const double *own, const double *c, const double *V, double *out);
 };
 
 SD_KERNEL_TABLES(struct sd_lubrication_kernels, sd_lubrication);

@@ -87,7 +87,7 @@ static void step(pair *p, const sheared_pair *s, double dt, double *normals, wal
 {
   const double size = sqrt(2.0 / dt);
   double F[12], load[12], y[12], f[12] = {0.0}, of_points[12], of_films[12], points[6], films[6],
-                                 work[48 + 24 + 12];
+                                 work[120 + 24];
   const sd_bodies_blocks blocks = {NULL, NULL};
   const sd_drifter d = {NULL, NULL};
   sd_noise_report report;
@@ -95,7 +95,7 @@ static void step(pair *p, const sheared_pair *s, double dt, double *normals, wal
   for (int j = 0; j < 12; j++) load[j] = 1.5 * F[j] - 0.5 * at->old[j];
   memcpy(at->old, F, sizeof F);
   const sd_bodies now = stand(p, at->x, at->x, s->rate);
-  assert_int_equal(sd_tie_make(&now), SD_OK);
+  assert_int_equal(sd_tie_make(&now, (sd_tie_room){work, work + 120}), SD_OK);
   assert_int_equal(sd_bodies_draw(&p->noise, &now, &blocks, normals, 1e-9, y, &report), SD_OK);
   assert_int_equal(sd_lubrication_noise(now.tie->L, normals_of_film, normals + 12, f), SD_OK);
   for (int j = 0; j < 12; j++) y[j] *= size, f[j] *= size;

@@ -130,7 +130,7 @@ static void add_mean(const place_of *s, const sd_bodies *A, const sd_drifter *d,
   const int size = 6 * s->n;
   double of_points[24], of_films[24], answer[ANSWER], largest = 0.0, *u = calloc((size_t) sd_bodies_unknowns(A),
                                                                                  sizeof(double));
-  double *work = malloc(sizeof(double) * (size_t) (24 * s->n + 12 * A->spheres.n + sd_bodies_unknowns(A)));
+  double *work = malloc(sizeof(double) * (size_t) (60 * s->n + 12 * A->spheres.n + sd_bodies_unknowns(A)));
   const sd_drifter_push push = {u, y ? y : u, NULL, f, NULL, 1e-9};
   assert_int_equal(sd_drifter_move(A, d, &push, work, of_points, of_films), SD_OK);
   for (int j = 0; j < size; j++) largest = fmax(largest, fmax(fabs(of_points[j]), fabs(of_films[j])));
@@ -219,7 +219,8 @@ static double error_of_drift(const place_of *s, int by_differences)
   const sd_body_follow *follows[4] = {&follow, &follow, &follow, &follow};
   const sd_bodies_blocks blocks = {at.A.body, roots};
   const sd_drifter d = {at.A.body, follows};
-  if (s->films) assert_int_equal(sd_tie_make(&at.A), SD_OK);
+  double by_bodies[SD_TIE_OF_BODY * MOST], by_spheres[SD_TIE_OF_SPHERE * MOST];
+  if (s->films) assert_int_equal(sd_tie_make(&at.A, (sd_tie_room){by_bodies, by_spheres}), SD_OK);
   sd_bodies_noise noise = {0};
   sd_noise_report report;
   double *w = calloc(2 * (size_t) rows, sizeof(double)), *y = w + rows;
