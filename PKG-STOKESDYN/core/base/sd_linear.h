@@ -52,6 +52,12 @@ sd_status sd_symmetric_root(int n, double *A);
  * work [2 n]. Z, work NULL: values alone. SD_OK; SD_ENOTFINITE. */
 sd_status sd_tridiagonal_eigen(int n, double *d, double *e, double *Z, double *work);
 
+/* Where element p, q of a symmetric 3x3 stands in its xx yy zz xy xz yz */
+static inline int sd_symmetric3_at(int p, int q)
+{
+  return p == q ? p : p + q + 2;
+}
+
 /* y = A x; y = A^T x; C = A B. 3x3 row-major, no aliasing. */
 static inline void sd_multiply3(const double A[9], const double x[3], double y[3])
 {

@@ -1,6 +1,8 @@
 /* Shift, correction, central friction and two fluids: what they are exact for, what they keep. */
 #include "sph_scene.h"
 
+#include "sd_linear.h"
+
 enum { WIDE = 32 };
 
 /* What a step computes for one scene, as the glue calls it. */
@@ -315,11 +317,12 @@ static void corrected_friction(void **state)
         r2 += d[c] * d[c];
         vd += d[c] * u[c];
       }
-      static const int of[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
       const double *mine = t.B + 8 * a, *other = s.phase[b] < 0 ? mine : t.B + 8 * b;
       for (int c = 0; c < 3; c++)
-        for (int e = 0; e < 3; e++)
-          Bd += 0.5 * d[c] * d[e] * (mine[of[c][e]] + other[of[c][e]]);
+        for (int e = 0; e < 3; e++) {
+          const int at = sd_symmetric3_at(c, e);
+          Bd += 0.5 * d[c] * d[e] * (mine[at] + other[at]);
+        }
       const double g = sd_sph_dW_over_r(SD_SPH_WENDLAND, 3, sqrt(r2), k->h) * Bd / r2;
       const double rub = s.m[a] * s.m[b] * 2.0 * k->mu / (s.rho[a] * s.rho[b]) * g;
       for (int c = 0; c < 3; c++) {

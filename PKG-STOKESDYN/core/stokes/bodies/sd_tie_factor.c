@@ -99,10 +99,9 @@ static void factor_own_block(const sd_bodies *A, int b, double H[36])
 /* L_ii + X_ii of a sphere */
 static void films_on(const sd_tie *t, int i, double B[36])
 {
-  static const int kept[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   memcpy(B, t->L->diagonal + 36 * (long) i, 36 * sizeof(double));
   for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) B[6 * p + q] += t->stiff[6 * (long) i + kept[p][q]];
+    for (int q = 0; q < 3; q++) B[6 * p + q] += t->stiff[6 * (long) i + sd_symmetric3_at(p, q)];
 }
 
 /* Films on spheres, by bodies, then all in units of the drags. A body that nobody is near to is

@@ -232,7 +232,6 @@ static void model_resists_approach_alone(void **state)
 {
   (void) state;
   static const double a[8] = {1.0, 1.4, 0.6, 1.0, 0.8, 1.2, 1.0, 0.7};
-  static const int kept[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   flock *f = flock_create(0, NULL, NULL, 1, 0, 8, 1.3);
   memcpy(f->a, a, sizeof(a));
   crowd(f, 0.3, 11);
@@ -258,7 +257,7 @@ static void model_resists_approach_alone(void **state)
       largest = fmax(largest, X[p][q]);
       if (p / 6 != q / 6) continue;
       const double *own = t->tie.stiff + 6 * (p / 6);
-      if (p % 6 < 3 && q % 6 < 3) CHECK_NEAR(own[kept[p % 6][q % 6]], X[p][q], 1e-12 * largest);
+      if (p % 6 < 3 && q % 6 < 3) CHECK_NEAR(own[sd_symmetric3_at(p % 6, q % 6)], X[p][q], 1e-12 * largest);
     }
   assert_true(largest > 0.5 * P6);
   for (int j = 0; j < N; j++) CHECK_NEAR(out[j], 0.0, 1e-14 * largest);

@@ -372,14 +372,14 @@ static void all_instructions_make_the_same_product(void **state)
   near_scene q = near_create(cloud_dense(N, 0.4, 1.0, 1.0, eta, 3), 1.0, 1e-3);
   near_place(&q);
   const sd_lubrication *L = &q.L;
-  static const int kept[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   double V[WIDTH], own[WIDTH], expected[WIDTH] = {0.0}, out[WIDTH], largest = 0.0;
   double *c = malloc(sizeof(double) * (size_t) L->count);
   uint64_t seed = 7;
   for (int j = 0; j < WIDTH; j++) V[j] = uniform(&seed, -1, 1), own[j] = uniform(&seed, 0, 1);
   for (int i = 0; i < N; i++) {
     add_times(L->diagonal + 36 * i, V + 6 * i, expected + 6 * i);
-    for (int e = 0; e < 9; e++) expected[6 * i + e / 3] += own[6 * i + kept[e / 3][e % 3]] * V[6 * i + e % 3];
+    for (int e = 0; e < 9; e++)
+      expected[6 * i + e / 3] += own[6 * i + sd_symmetric3_at(e / 3, e % 3)] * V[6 * i + e % 3];
   }
   for (long k = 0; k < L->count; k++) {
     double B[36] = {0.0}, turned[36];
