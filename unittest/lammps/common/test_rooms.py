@@ -161,19 +161,14 @@ def test_no_files_of_the_glue_include_each_other_in_a_circle():
     assert circles(includes) == {}
 
 
-def room_of(path):
-    """Its folder; the rooms below ewald, which share its headers, count as one with it"""
-    return re.sub("/ewald/.*", "/ewald", path.parent.relative_to(TOP / "PKG-STOKESDYN").as_posix())
-
-
-def arrows_between_rooms():
-    """{room: rooms whose headers it includes}"""
+def arrows_between_rooms(depth=None):
+    """{room: rooms whose headers it includes}; depth: of folders that count, deeper ones are parts of them"""
     files = [path for path in (TOP / "PKG-STOKESDYN").rglob("*") if path.suffix in (".c", ".h", ".cpp")]
-    room = {path.name: room_of(path) for path in files}
+    room = {path.name: "/".join(path.parent.relative_to(TOP / "PKG-STOKESDYN").parts[:depth]) for path in files}
     arrows = {name: set() for name in room.values()}
     for path in files:
-        arrows[room_of(path)] |= {room[name] for name in re.findall(r'#include "([^"]+)"', path.read_text())
-                                  if name in room}
+        arrows[room[path.name]] |= {room[name] for name in re.findall(r'#include "([^"]+)"', path.read_text())
+                                    if name in room}
     return {name: below - {name} for name, below in arrows.items()}
 
 
@@ -183,10 +178,15 @@ def test_no_rooms_include_each_other_in_a_circle():
     assert circles(arrows) == {}
 
 
-def test_the_map_has_the_rooms_of_stokes_from_above():
-    order = re.findall(r"^\| `(stokes/\w+)/` \|", (TOP / "PKG-STOKESDYN" / "README.md").read_text(), re.M)
-    arrows = arrows_between_rooms()
-    assert set(order) == {name for name in arrows if name.startswith("stokes/")}
+@pytest.mark.parametrize("rooms, row", [
+    ("stokes", r"^\| (`stokes/\w+/`) \|"), ("core/stokes", r"^  \| ((?:`\w+/`(?:, )?)+) \|"),
+    ("core/stokes/ewald", r"^  \| (`ewald/\w+/`) \|")])
+def test_the_map_has_rooms_in_the_order_in_which_they_stand_on_each_other(rooms, row):
+    """Those of the glue from above, those of the core from below"""
+    rows = "".join(re.findall(row, (TOP / "PKG-STOKESDYN" / "README.md").read_text(), re.M))
+    order = [f"{rooms}/{name}" for name in re.findall(r"(\w+)/`", rows)][::-1 if "core" in rooms else 1]
+    arrows = arrows_between_rooms(depth=order[0].count("/") + 1)
+    assert set(order) == {name for name in arrows if name.startswith(rooms + "/")}
     for number, name in enumerate(order):
         assert arrows[name] & set(order) <= set(order[number:]), name
 

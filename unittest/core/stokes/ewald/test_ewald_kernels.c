@@ -94,7 +94,7 @@ static void spreading_and_interpolation_agree(void **state)
   const size_t numbers = (size_t) SIDE * SIDE * ROW + 64;
   double *expected = malloc(sizeof(double) * numbers), *brick = malloc(sizeof(double) * numbers);
   const cloud c = make(7, 0);
-  for (int points = 4; points <= SD_EWALD_MOST_POINTS; points++)
+  for (int points = 4; points <= SD_WINDOW_MOST_POINTS; points++)
     for (int terms = 1; terms <= 4; terms++) {
       static sd_window w;
       sd_spread_place place[N];

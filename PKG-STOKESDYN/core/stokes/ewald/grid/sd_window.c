@@ -31,7 +31,7 @@ void sd_window_fit(int points, double beta, double tolerance, sd_window *w)
 {
   enum { NODES = SD_WINDOW_TERMS + 8 };
   const long double unit = 1.0L / bessel_i0(beta);
-  long double series[SD_EWALD_MOST_POINTS][NODES];
+  long double series[SD_WINDOW_MOST_POINTS][NODES];
   memset(w, 0, sizeof(*w));
   w->points = points;
   for (int k = 0; k < points; k++) {

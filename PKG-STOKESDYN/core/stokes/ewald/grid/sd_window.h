@@ -7,12 +7,16 @@
 #ifndef SD_WINDOW_H
 #define SD_WINDOW_H
 
-#include "sd_ewald_chosen.h"
+#include "sd_extern_c.h"
 
 SD_BEGIN_C
 
-/* of the longest polynomial; columns: points up to whole vectors */
-enum { SD_WINDOW_TERMS = 24, SD_WINDOW_COLUMNS = (SD_EWALD_MOST_POINTS + 7) / 8 * 8 };
+/* The widest window; terms of the longest polynomial; columns: points up to whole vectors */
+enum {
+  SD_WINDOW_MOST_POINTS = 20,
+  SD_WINDOW_TERMS = 24,
+  SD_WINDOW_COLUMNS = (SD_WINDOW_MOST_POINTS + 7) / 8 * 8
+};
 
 /* coefficient [m][k]: of v^m at point k; v = 2u - 1 in [-1, 1], where the sphere at grid coordinate
  * s has u = s - P/2 - floor(s - P/2), and its first point is floor(s - P/2) + 1. Points beyond P:

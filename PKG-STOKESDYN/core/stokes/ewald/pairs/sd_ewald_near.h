@@ -4,7 +4,6 @@
 
 #include "sd_ewald_cells.h"
 #include "sd_ewald_internal.h"
-#include "sd_ewald_internal.h"
 #include "sd_status.h"
 #include "sd_world.h"
 

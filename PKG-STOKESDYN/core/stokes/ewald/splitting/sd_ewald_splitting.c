@@ -127,7 +127,7 @@ double sd_splitting_y(const sd_ewald_box *box, const splitting *by, double t)
 static int whole_points(double least)
 {
   const int points = (int) ceil(least - 1e-9);
-  return points < 4 ? 4 : points > SD_EWALD_MOST_POINTS ? SD_EWALD_MOST_POINTS : points;
+  return points < 4 ? 4 : points > SD_WINDOW_MOST_POINTS ? SD_WINDOW_MOST_POINTS : points;
 }
 
 int sd_splitting_points(double t)

@@ -5,9 +5,6 @@
 #include "sd_ewald_box.h"
 #include "sd_wall.h"
 
-/* The widest window */
-enum { SD_EWALD_MOST_POINTS = 20 };
-
 /* Images in a plane wall, of an open box: they have a smooth part of their own on the same grid
  * (sd_image_wave.h), and what it leaves of a pair ends at a range, from a sphere to an image. */
 typedef struct {

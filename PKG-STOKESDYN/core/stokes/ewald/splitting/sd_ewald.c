@@ -7,6 +7,7 @@
 #include "sd_ewald_cost.h"
 #include "sd_ewald_rule_internal.h"
 #include "sd_ewald_splitting_internal.h"
+#include "sd_window.h"
 
 static const double TIGHTEST = 1e-13, LOOSEST = 1e-1;
 
@@ -91,7 +92,7 @@ static void split(sd_ewald *e, const splitting *by, double *near)
   }
   e->points = sd_splitting_points_of(by, e->tolerance, e->xi * y, t) + by->tall;
   e->beta = sd_splitting_beta(e, by) * e->points;
-  while (by->fall == BAND && e->points < SD_EWALD_MOST_POINTS && sd_splitting_common_flow(e) > COMMON * e->tolerance)
+  while (by->fall == BAND && e->points < SD_WINDOW_MOST_POINTS && sd_splitting_common_flow(e) > COMMON * e->tolerance)
     e->beta = sd_splitting_beta(e, by) * ++e->points;
   e->reach = e->range;
   e->spacing = sd_splitting_spacing(e, by, *near, y);
