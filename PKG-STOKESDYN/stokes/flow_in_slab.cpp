@@ -21,11 +21,10 @@ static const double AT_SPECKS = 0.3;
 /* Of this rank in a piece, at least */
 static const double FEWEST = 200.0;
 
-/* The splitting for these spheres and as many specks, at the heights of all. Radius of a speck */
-double FlowInSlab::choose(const Voice &voice, const Scene &scene, const Piece &sources,
-                          const std::vector<double> &x)
+/* These spheres of all ranks and as many specks, at the heights of all */
+sd_slab_spheres FlowInSlab::with_specks(MPI_Comm world, const sd_slab_walls &walls, const Piece &sources,
+                                        const std::vector<double> &x)
 {
-  const sd_slab_walls walls = scene.settings.boundary.slab_walls();
   double bounds[4] = {0.0, 0.0, -INFINITY, -INFINITY};    // largest, 1/smallest; heights
   for (double a : sources.a) {
     bounds[0] = std::max(bounds[0], a);
@@ -37,28 +36,35 @@ double FlowInSlab::choose(const Voice &voice, const Scene &scene, const Piece &s
       bounds[2] = std::max(bounds[2], -height);
       bounds[3] = std::max(bounds[3], height);
     }
-  MPI_Allreduce(MPI_IN_PLACE, bounds, 4, MPI_DOUBLE, MPI_MAX, voice.lmp->world);
-  const double speck = SPECK / bounds[1];
+  MPI_Allreduce(MPI_IN_PLACE, bounds, 4, MPI_DOUBLE, MPI_MAX, world);
   double sums[3] = {0.0};
   for (double a : sources.a) {
     sums[0] += 1.0;
     sums[1] += a * a;
     sums[2] += a * a * a * a;
   }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, voice.lmp->world);
-  sd_ewald_sizes sizes = {};
-  sizes.all = {2.0 * sums[0], sums[1], sums[2], bounds[0]};
+  MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, world);
+  sd_slab_spheres all = {{}, SPECK / bounds[1], -bounds[2], bounds[3]};
+  all.sizes.all = {2.0 * sums[0], sums[1], sums[2], bounds[0]};
+  return all;
+}
+
+/* The splitting for all of these. Radius of a speck */
+double FlowInSlab::choose(const Voice &voice, const Scene &scene, const Piece &sources,
+                          const std::vector<double> &x)
+{
+  const sd_slab_walls walls = scene.settings.boundary.slab_walls();
+  const sd_slab_spheres all = with_specks(voice.lmp->world, walls, sources, x);
   sd_ewald_box box = Scene::lattice_box(voice.lmp->domain);
   box.periodic = 1;
   const sd_status status =
-      sd_slab_choose(&walls, &box, -bounds[2], bounds[3], speck, &sizes,
-                     AT_SPECKS * scene.settings.far_field_tolerance, &slab);
+      sd_slab_choose(&walls, &box, &all, AT_SPECKS * scene.settings.far_field_tolerance, &slab);
   if (status != SD_OK)
-    voice.at_step().fail("the flow of " + text(sums[0]) + " spheres or points at heights from " +
-                         text(-bounds[2]) + " to " + text(bounds[3]) +
+    voice.at_step().fail("the flow of " + text(all.sizes.all.count / 2.0) + " spheres or points at heights from " +
+                         text(all.lo) + " to " + text(all.hi) +
                          ": no grid for Ewald sums: " + sd_status_string(status) +
                          "; give lo and hi nearer to the spheres");
-  return speck;
+  return all.smallest;
 }
 
 void FlowInSlab::add_piece(const Voice &voice, Scene &scene, Piece &piece, std::vector<double> &u)

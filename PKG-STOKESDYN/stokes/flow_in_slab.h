@@ -42,6 +42,8 @@ class FlowInSlab {
   struct Piece {
     std::vector<double> x, a, F;
   };
+  static sd_slab_spheres with_specks(MPI_Comm, const sd_slab_walls &, const Piece &sources,
+                                     const std::vector<double> &x);
   double choose(const Voice &, const Scene &, const Piece &sources, const std::vector<double> &x);
   void add_piece(const Voice &, Scene &, Piece &piece, std::vector<double> &u);
 };

@@ -101,7 +101,7 @@ void Scene::surround(double reach, const std::string &keyword)
 
 // --- who sees whom -------------------------------------------------------------------------------
 
-void Scene::update(const std::vector<int> &who, const Ambient &ambient)
+void Scene::update(const std::vector<int> &who, const Ambient &ambient, std::vector<double> &idle)
 {
   stand(who, ambient);
   turn_shells();
@@ -112,11 +112,11 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
       if (!somebody_sees) return;
       surround(ewald.reach + 2.0 * extent(most), "far_field: the largest radius, " + text(most));
       tell();
-      place(size_with_copies());
+      place(size_with_copies(), idle);
     } else {
       gather();
       look_for_others(n_all);
-      place(n_all);
+      place(n_all, idle);
     }
     return;
   }
@@ -133,7 +133,7 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient)
     sd_pairs_within(&candidates.pairs, &spheres, settings.cutoff, pairs.first, pairs.neighbor);
     pairs.pairs.n = size();
   }
-  place(size_with_copies());
+  place(size_with_copies(), idle);
 }
 
 /* Of all ranks, where everybody sees everybody: of two there is another, and of one there is if it has
@@ -180,7 +180,7 @@ void Scene::find_pairs()
 static const int FLOATS_FROM = 512;
 
 /* The spheres where they stand, and what their engine may ask. */
-void Scene::place(int n_all_or_copies)
+void Scene::place(int n_all_or_copies, std::vector<double> &idle)
 {
   const bool cloud = view() == SD_VIEW_ALL;
   sd_mobility_scene scene = {};
@@ -190,7 +190,7 @@ void Scene::place(int n_all_or_copies)
   scene.spheres = cloud ? this->cloud() : local();
   scene.pairs = view() == SD_VIEW_LIST ? &list() : nullptr;
   scene.world = cloud ? ranks_of_cloud() : ranks();
-  if (shells) place_points(n_all_or_copies, scene);
+  if (shells) place_points(n_all_or_copies, idle, scene);
   if (scene.n_all < FLOATS_FROM) scene.how.tolerance = 0.0;
   const sd_status status = sd_mobility_place(&omega, engine, &scene);
   if (status != SD_OK)
@@ -213,10 +213,10 @@ std::vector<double> Scene::turned_shells(int n_all_or_copies)
 }
 
 /* The same with the points of the spheres */
-void Scene::place_points(int n_all_or_copies, sd_mobility_scene &scene)
+void Scene::place_points(int n_all_or_copies, std::vector<double> &idle, sd_mobility_scene &scene)
 {
   shells->expand(n_all_or_copies, turned_shells(n_all_or_copies), view() == SD_VIEW_ALL ? cloud() : local(),
-                 engine->reads_places_once ? idle : nullptr);
+                 engine->reads_places_once ? &idle : nullptr);
   scene.n = shells->first_of_rows()[size()];
   scene.n_all = shells->first_of_all()[n_all_or_copies];
   scene.spheres = shells->all();

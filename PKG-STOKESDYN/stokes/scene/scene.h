@@ -79,8 +79,6 @@ class Scene : protected LAMMPS_NS::Pointers {
   WholeClumps whole;
   /* Spheres are shells of points, which are what the engine sees; nullptr: they are points */
   Shells *shells = nullptr;
-  /* With shells: room that nobody else uses while spheres are placed */
-  std::vector<double> *idle = nullptr;
   /* With shells: finds which each sphere has, and turns those of clumps, when the rows stand */
   std::function<void()> fit, orient;
   void turn_shells()
@@ -97,8 +95,9 @@ class Scene : protected LAMMPS_NS::Pointers {
    * stand. whole stands already. */
   void stand(const std::vector<int> &who, const Ambient &ambient);
   /* The same, and the engine's pairs: anew if LAMMPS has re-neighboured, or if the spheres are
-   * others than before on any rank. */
-  void update(const std::vector<int> &who, const Ambient &ambient);
+   * others than before on any rank. idle: room that nobody else uses until this returns, for the places
+   * of points; an engine that reads them later on has room of its own. */
+  void update(const std::vector<int> &who, const Ambient &ambient, std::vector<double> &idle);
   const std::vector<int> &who() const { return own; }
   int size() const { return (int) tags.size(); }
   int64_t tag(int k) const { return tags[k]; }
@@ -265,7 +264,11 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* with which spheres, by their points, have far_field_tolerance */
   double tolerance_of_sums() const;
   const sd_mobility_engine *engine_of_all();
+  sd_status choose(const sd_ewald_box &box, const sd_ewald_sizes &sizes);
+  [[noreturn]] void no_grid(double count, const std::string &where, sd_status status) const;
+  void refuse_images(double images, double largest) const;
   void split_slab();
+  sd_slab_spheres measure_slab(const sd_slab_walls &walls) const;
   sd_ewald_sizes sizes_of_all(double largest) const;
   sd_ewald_sizes measure(sd_ewald_box &box) const;
   void tell();
@@ -274,9 +277,9 @@ class Scene : protected LAMMPS_NS::Pointers {
   void find_pairs();
   void look_for_others(double spheres);
   void gather();
-  void place(int n_all_or_copies);
+  void place(int n_all_or_copies, std::vector<double> &idle);
   std::vector<double> turned_shells(int n_all_or_copies);
-  void place_points(int n_all_or_copies, sd_mobility_scene &scene);
+  void place_points(int n_all_or_copies, std::vector<double> &idle, sd_mobility_scene &scene);
   sd_world ranks_of_cloud();
   /* Of each sphere width numbers, or so many for each of its rows, first [n_all + 1] */
   void to_cloud(const double *own_rows, double *cloud_rows, int width, const int *first);

@@ -96,6 +96,38 @@ sd_ewald_sizes Scene::measure(sd_ewald_box &box) const
   return all;
 }
 
+/* How the sum is split, of spheres that there are, in a box that is periodic or open */
+sd_status Scene::choose(const sd_ewald_box &box, const sd_ewald_sizes &sizes)
+{
+  const sd_wall &wall = settings.boundary.image_wall();
+  const double tolerance = tolerance_of_sums();
+  sd_status status;
+  if (wall.sign)
+    status = sd_ewald_choose_at_wall(&box, &wall, &sizes, tolerance, &ewald);
+  else if (settings.positive > 0.0 && box.periodic)
+    status = sd_ewald_choose_positive(&box, &sizes, width(), tolerance, settings.positive, &ewald);
+  else
+    status = sd_ewald_levels_choose(&box, &sizes, width(), tolerance, &ewald, &second_level);
+  if (harmless_error() < (1.0 - 1e-9) * SD_EWALD_SINGLE) ewald.single = 0;
+  ewald.box = box;
+  return status;
+}
+
+void Scene::no_grid(double count, const std::string &where, sd_status status) const
+{
+  voice.fail("keyword far_field: no grid for Ewald sums of " + text(count) + " spheres " + where +
+             " at far_field_tolerance " + text(settings.far_field_tolerance) + ": " + sd_status_string(status));
+}
+
+/* Of spheres of other ranks and images, near those of one */
+void Scene::refuse_images(double images, double largest) const
+{
+  if (!(images < MOST_IMAGES))
+    voice.fail("keyword far_field: the largest sphere, radius " + text(largest) +
+               ", is so large for the periodic box that it would see " + text(images) +
+               " images; is it in other units?");
+}
+
 /* Is the sum over everybody split, and how? In an open box only if that costs less, or is asked
  * for; of a few spheres it is known without a look at them. The same on all ranks. */
 bool Scene::split()
@@ -108,32 +140,15 @@ bool Scene::split()
   ewald.count = sizes.all.count;
   second_level = {};
   if (sizes.all.count == 0.0) return must;
-  const sd_wall &wall = settings.boundary.image_wall();
-  const double all_pairs =
-      sizes.all.count * sizes.all.count * (wall.sign ? SD_PAIR_AT_WALL : 1.0);
-  const double tolerance = tolerance_of_sums();
-  sd_status status;
-  if (wall.sign)
-    status = sd_ewald_choose_at_wall(&box, &wall, &sizes, tolerance, &ewald);
-  else if (settings.positive > 0.0 && box.periodic)
-    status =
-        sd_ewald_choose_positive(&box, &sizes, width(), tolerance, settings.positive, &ewald);
-  else
-    status = sd_ewald_levels_choose(&box, &sizes, width(), tolerance, &ewald, &second_level);
-  if (harmless_error() < (1.0 - 1e-9) * SD_EWALD_SINGLE) ewald.single = 0;
-  ewald.box = box;
+  const sd_status status = choose(box, sizes);
   if (status != SD_OK && must)
-    voice.fail("keyword far_field: no grid for Ewald sums of " + text(sizes.all.count) +
-               " spheres in a box of " + text(box.edge[0]) + " x " + text(box.edge[1]) + " x " +
-               text(box.edge[2]) + " at far_field_tolerance " + text(settings.far_field_tolerance) +
-               ": " + sd_status_string(status));
+    no_grid(sizes.all.count, "in a box of " + text(box.edge[0]) + " x " + text(box.edge[1]) + " x " +
+            text(box.edge[2]), status);
   const double seen =
       std::max(pow(ewald.reach, 3), second_level.count * pow(second_level.split.range, 3));
-  const double images = 8.0 * sizes.all.count * seen / sd_ewald_volume(&box);
-  if (box.periodic && !(images < MOST_IMAGES))
-    voice.fail("keyword far_field: the largest sphere, radius " + text(sizes.all.largest) +
-               ", is so large for the periodic box that it would see " + text(images) +
-               " images; is it in other units?");
+  if (box.periodic) refuse_images(8.0 * sizes.all.count * seen / sd_ewald_volume(&box), sizes.all.largest);
+  const double all_pairs =
+      sizes.all.count * sizes.all.count * (settings.boundary.image_wall().sign ? SD_PAIR_AT_WALL : 1.0);
   return must || (status == SD_OK && sd_ewald_levels_cost(&ewald, &second_level) < all_pairs);
 }
 
@@ -148,13 +163,10 @@ const sd_mobility_engine *Scene::engine_of_all()
   return second_level.from > 0.0 ? &sd_mobility_levels : &sd_mobility_ewald;
 }
 
-/* The slab of all spheres; there is no other way to sum it. */
-void Scene::split_slab()
+/* The points of all ranks */
+sd_slab_spheres Scene::measure_slab(const sd_slab_walls &walls) const
 {
-  const sd_slab_walls walls = settings.boundary.slab_walls();
-  refuse_wide_spheres(voice, settings.boundary, most);
-  double bounds[4] = {0.0, 0.0, -INFINITY,
-                      -INFINITY};    // of points: largest radius, 1/smallest; heights
+  double bounds[4] = {0.0, 0.0, -INFINITY, -INFINITY};    // largest radius, 1/smallest; heights
   for (int k = 0; k < size(); k++) {
     const double height = sd_slab_height(&walls, &x[3 * (size_t) k]), reach = extent(a[k]);
     if (!(a[k] > 0.0)) continue;
@@ -164,9 +176,17 @@ void Scene::split_slab()
     bounds[3] = std::max(bounds[3], reach + height);
   }
   MPI_Allreduce(MPI_IN_PLACE, bounds, 4, MPI_DOUBLE, MPI_MAX, world);
-  const sd_ewald_sizes sizes = sizes_of_all(bounds[0]);
-  const double smallest = bounds[1] > 0.0 ? 1.0 / bounds[1] : 0.0;
-  if (bounds[0] > SD_SLAB_RATIO * (1.0 + 1e-9) * smallest)
+  return {sizes_of_all(bounds[0]), bounds[1] > 0.0 ? 1.0 / bounds[1] : 0.0, -bounds[2], bounds[3]};
+}
+
+/* The slab of all spheres; there is no other way to sum it. */
+void Scene::split_slab()
+{
+  const sd_slab_walls walls = settings.boundary.slab_walls();
+  refuse_wide_spheres(voice, settings.boundary, most);
+  const sd_slab_spheres all = measure_slab(walls);
+  const sd_ewald_class &sizes = all.sizes.all;
+  if (sizes.largest > SD_SLAB_RATIO * (1.0 + 1e-9) * all.smallest)
     voice.fail("keyword far_field: " + settings.boundary.where() +
                ", periodic along it, the largest radius must be at most " +
                text(SD_SLAB_RATIO) + " times the smallest, and they are " +
@@ -174,24 +194,16 @@ void Scene::split_slab()
                ": use group to select spheres");
   sd_ewald_box box = lattice_box(domain);
   box.periodic = 1;
-  const sd_status status = sd_slab_choose(&walls, &box, -bounds[2], bounds[3], smallest, &sizes,
-                                          tolerance_of_sums(), &slab);
+  const sd_status status = sd_slab_choose(&walls, &box, &all, tolerance_of_sums(), &slab);
   ewald = slab.ewald;
   second_level = {};
+  const int axis = walls.wall->axis;
   if (status != SD_OK)
-    voice.fail("keyword far_field: no grid for Ewald sums of " + text(sizes.all.count) +
-               " spheres " + settings.boundary.where() + ", in a cell of " +
-               text(box.edge[(walls.wall->axis + 1) % 3]) + " x " +
-               text(box.edge[(walls.wall->axis + 2) % 3]) + " and heights from " +
-               text(-bounds[2]) + " to " + text(bounds[3]) + " at far_field_tolerance " +
-               text(settings.far_field_tolerance) + ": " + sd_status_string(status));
-  const double area =
-      ewald.count > 0.0 ? sd_ewald_volume(&ewald.box) / ewald.box.edge[walls.wall->axis] : 1.0;
-  const double images = 4.0 * sizes.all.count * ewald.reach * ewald.reach / area;
-  if (!(images < MOST_IMAGES))
-    voice.fail("keyword far_field: the largest sphere, radius " + text(sizes.all.largest) +
-               ", is so large for the periodic box that it would see " + text(images) +
-               " images; is it in other units?");
+    no_grid(sizes.count, settings.boundary.where() + ", in a cell of " + text(box.edge[(axis + 1) % 3]) +
+            " x " + text(box.edge[(axis + 2) % 3]) + " and heights from " + text(all.lo) + " to " +
+            text(all.hi), status);
+  const double area = ewald.count > 0.0 ? sd_ewald_volume(&ewald.box) / ewald.box.edge[axis] : 1.0;
+  refuse_images(4.0 * sizes.count * ewald.reach * ewald.reach / area, sizes.largest);
 }
 
 static std::string parameters_of(const sd_ewald &e)

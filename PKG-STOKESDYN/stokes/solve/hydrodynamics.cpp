@@ -33,7 +33,6 @@ Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
     bodies(voice, scene, ambient, rigid, clump_poses, given, lubrication),
     solver(lmp, scene, bodies, ambient, shells, settings), guard(voice)
 {
-  scene.idle = &solver.idle();
 }
 
 Hydrodynamics *Hydrodynamics::of(LAMMPS *lmp)
@@ -233,7 +232,7 @@ void Hydrodynamics::place()
 {
   const Scene::Settings &how = settings.scene;
   scene.set_open_box(memory->global.open_box);
-  scene.update(solved_atoms, ambient);
+  scene.update(solved_atoms, ambient, solver.idle());
   rows_stand.set(epochs.step);
   look_at_wall();
   memory->global.open_box = scene.open_box();

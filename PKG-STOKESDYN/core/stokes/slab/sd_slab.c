@@ -46,15 +46,15 @@ void sd_slab_keep_off(const sd_slab_walls *walls, const double x[3], double a, d
 
 /* Heights for which the present splitting stands, if it is not much too tall for them; else
  * those of the spheres with a twentieth to spare, so that it lasts while they move. */
-static void room_for(const sd_slab_walls *walls, double lo, double hi, double smallest,
-                     double largest, sd_slab *s)
+static void room_for(const sd_slab_walls *walls, const sd_slab_spheres *spheres, sd_slab *s)
 {
+  const double lo = spheres->lo, hi = spheres->hi, smallest = spheres->smallest;
   if (walls->kind == SD_SLAB_SLIT) {
     s->lo = smallest;
     s->hi = walls->height - smallest;
     return;
   }
-  const double spare = fmax(0.05 * (hi - lo), largest);
+  const double spare = fmax(0.05 * (hi - lo), spheres->sizes.all.largest);
   const int floor_below = walls->kind == SD_SLAB_FLOOR;
   const double lowest = floor_below ? smallest : lo - spare, highest = hi + spare;
   const int holds = lo >= s->lo && hi <= s->hi && s->ewald.count > 0.0 &&
@@ -79,9 +79,8 @@ static void stand(sd_slab *s)
   e->box.origin[wall->axis] = wall->at + wall->sign * lowest;
 }
 
-sd_status sd_slab_choose(const sd_slab_walls *walls, const sd_ewald_box *box, double lo, double hi,
-                         double smallest, const sd_ewald_sizes *sizes, double tolerance,
-                         sd_slab *out)
+sd_status sd_slab_choose(const sd_slab_walls *walls, const sd_ewald_box *box,
+                         const sd_slab_spheres *spheres, double tolerance, sd_slab *out)
 {
   sd_slab s;
   memset(&s, 0, sizeof(s)); /* all bytes: the engine compares them */
@@ -89,11 +88,11 @@ sd_status sd_slab_choose(const sd_slab_walls *walls, const sd_ewald_box *box, do
   s.hi = out->hi;
   s.ewald.count = out->ewald.count;
   memcpy(&s.walls, walls, sizeof(s.walls));
-  const int some = sizes->all.count > 0.0;
-  if (some) room_for(walls, lo, hi, smallest, sizes->all.largest, &s);
-  const double gap = walls->kind == SD_SLAB_SLIT ? walls->height + 2.0 * smallest : INFINITY;
+  const int some = spheres->sizes.all.count > 0.0;
+  if (some) room_for(walls, spheres, &s);
+  const double gap = walls->kind == SD_SLAB_SLIT ? walls->height + 2.0 * spheres->smallest : INFINITY;
   const sd_status status = sd_ewald_choose_in_slab(box, walls->wall->axis, some ? s.hi - s.lo : 0.0,
-                                                   gap, sizes, tolerance, &s.ewald);
+                                                   gap, &spheres->sizes, tolerance, &s.ewald);
   if (status == SD_OK && s.ewald.count > 0.0) stand(&s);
   memcpy(out, &s, sizeof(s));
   return status;

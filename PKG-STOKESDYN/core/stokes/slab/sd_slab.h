@@ -78,17 +78,21 @@ static inline double sd_slab_height(const sd_slab_walls *walls, const double x[3
 /* x, or where a sphere of radius a touches the wall that it cuts */
 void sd_slab_keep_off(const sd_slab_walls *walls, const double x[3], double a, double out[3]);
 
-/* The splitting, by a rule, the same on every rank.
+/* The spheres that take part, of all ranks: how many of which size, the smallest radius, and heights of
+ * the lowest and the highest centre; length */
+typedef struct {
+  sd_ewald_sizes sizes;
+  double smallest, lo, hi;
+} sd_slab_spheres;
+
+/* The splitting, by a rule, the same on every rank. A floor and a layer have room for what spheres then
+ * move, and the room of the last splitting if it is not too large.
  *   box        origin and edges along the walls; no tilt. Across them it is not read
- *   lo, hi     heights of the lowest and the highest centre. A floor and a layer have room for what
- *              spheres then move, and the room of the last splitting if it is not too large
- *   smallest   radius; length
  *   tolerance  rms error of U over rms of F/(6 pi eta a), as of sd_ewald_choose
  * SD_OK; SD_ENOTFINITE as sd_ewald_choose; SD_ENOMEMORY for a grid of more than 2^31 points.
  * *out may be the present splitting, or zero. */
-sd_status sd_slab_choose(const sd_slab_walls *walls, const sd_ewald_box *box, double lo, double hi,
-                         double smallest, const sd_ewald_sizes *sizes, double tolerance,
-                         sd_slab *out);
+sd_status sd_slab_choose(const sd_slab_walls *walls, const sd_ewald_box *box,
+                         const sd_slab_spheres *spheres, double tolerance, sd_slab *out);
 
 /* Do tables made for one serve the other? */
 int sd_slab_same_tables(const sd_slab *made, const sd_slab *wanted);

@@ -38,19 +38,18 @@ static inline sd_ewald_box slab_box(int axis, double lx, double ly)
 static inline sd_status slab_choose(const sd_slab_walls *walls, const sd_ewald_box *box, const double *x,
                                     const double *a, int n, double tolerance, sd_slab *out)
 {
-  sd_ewald_sizes sizes = {0};
-  double lo = INFINITY, hi = -INFINITY, smallest = INFINITY;
-  for (int i = 0; i < n; i++) sizes.all.largest = fmax(sizes.all.largest, a[i]);
+  sd_slab_spheres s = {.smallest = INFINITY, .lo = INFINITY, .hi = -INFINITY};
+  for (int i = 0; i < n; i++) s.sizes.all.largest = fmax(s.sizes.all.largest, a[i]);
   for (int i = 0; i < n; i++) {
     if (!(a[i] > 0.0)) continue;
     double at[3];
     sd_slab_keep_off(walls, x + 3 * i, a[i], at);
-    sd_ewald_count(&sizes, a[i], 1);
-    smallest = fmin(smallest, a[i]);
-    lo = fmin(lo, sd_slab_height(walls, at));
-    hi = fmax(hi, sd_slab_height(walls, at));
+    sd_ewald_count(&s.sizes, a[i], 1);
+    s.smallest = fmin(s.smallest, a[i]);
+    s.lo = fmin(s.lo, sd_slab_height(walls, at));
+    s.hi = fmax(s.hi, sd_slab_height(walls, at));
   }
-  return sd_slab_choose(walls, box, lo, hi, smallest, &sizes, tolerance, out);
+  return sd_slab_choose(walls, box, &s, tolerance, out);
 }
 
 /* All images along the slab that a sphere may see */
