@@ -95,6 +95,13 @@ class FixSphGrains : public SphFix {
   std::vector<double> at_atoms(const std::vector<double> &of_points, int columns) const;
   std::vector<double> mean_of(const std::vector<double> &of_atoms, int columns);
   void stresses(std::vector<double> &F);
+  /* velocities [3 grains] */
+  struct Slip {
+    std::vector<double> water, grains;
+  };
+  Slip slip_of_now();
+  Slip slip_without_drag(const std::vector<double> &F);
+  std::vector<double> drag_factors();
   void drags(const std::vector<double> &F, std::vector<double> &D);
   void give_back(const std::vector<double> &D);
 };

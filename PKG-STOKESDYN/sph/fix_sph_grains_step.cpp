@@ -248,45 +248,73 @@ void FixSphGrains::stresses(std::vector<double> &F)
   sd_sph_grain_stresses((int) grains.size(), &of_grains, mean.data(), F.data());
 }
 
-/* The law at the slip of now, and its drag D at the velocities of the end of the step, which all
- * forces but drag make: those of atoms, and the stresses F of grains. */
-void FixSphGrains::drags(const std::vector<double> &F, std::vector<double> &D)
+/* Of the water at the places of grains, and of these */
+FixSphGrains::Slip FixSphGrains::slip_of_now()
 {
-  const int nlocal = atom->nlocal, n = (int) grains.size();
+  Slip slip;
+  const size_t all = atom->nlocal + atom->nghost;
+  std::vector<double> water(3 * all + 1, 0.0);
+  for (size_t i = 0; i < all; i++) std::copy_n(atom->v[i], 3, &water[3 * i]);
+  slip.water = mean_of(water, 3);
+  slip.grains.resize(3 * grains.size() + 1);
+  for (size_t j = 0; j < grains.size(); j++) std::copy_n(atom->v[grains[j]], 3, &slip.grains[3 * j]);
+  return slip;
+}
+
+/* That at the end of the step, which all forces but drag make: those of atoms, and the stresses F of grains */
+FixSphGrains::Slip FixSphGrains::slip_without_drag(const std::vector<double> &F)
+{
+  Slip slip;
   const double dt = update->dt;    // at a setup as well: that force begins the first step
-  const size_t all = nlocal + atom->nghost;
-  std::vector<double> now(3 * all + 1, 0.0), next(now), total_drag(points.size() + 1, 0.0),
-      v(3 * grains.size() + 1), v_next(v), k(grains.size() + 1), at_grains(grains.size() + 1);
-  for (int i = 0; i < nlocal; i++)
+  std::vector<double> water(3 * (size_t) (atom->nlocal + atom->nghost) + 1, 0.0);
+  for (int i = 0; i < atom->nlocal; i++)
     if (pair->is_particle(i))
       for (int d = 0; d < 3; d++)
-        next[3 * (size_t) i + d] = atom->v[i][d] + dt * atom->f[i][d] / atom->rmass[i];
-  forward(next.data(), 3);
-  for (size_t i = 0; i < all; i++) std::copy_n(atom->v[i], 3, &now[3 * i]);
-  for (int j = 0; j < n; j++)
-    for (int d = 0; d < 3; d++) {
-      v[3 * j + d] = atom->v[grains[j]][d];
-      v_next[3 * j + d] = v[3 * j + d] + dt * (atom->f[grains[j]][d] + F[3 * j + d]) / M[j];
-    }
+        water[3 * (size_t) i + d] = atom->v[i][d] + dt * atom->f[i][d] / atom->rmass[i];
+  forward(water.data(), 3);
+  slip.water = mean_of(water, 3);
+  slip.grains.resize(3 * grains.size() + 1);
+  for (size_t j = 0; j < grains.size(); j++)
+    for (int d = 0; d < 3; d++)
+      slip.grains[3 * j + d] =
+          atom->v[grains[j]][d] + dt * (atom->f[grains[j]][d] + F[3 * j + d]) / M[j];
+  return slip;
+}
 
-  const std::vector<double> u = mean_of(now, 3), u_next = mean_of(next, 3),
-                            rho = mean_of(std::vector<double>(atom->rho, atom->rho + all), 1);
+/* Force over slip of each grain, by the law at the slip of now */
+std::vector<double> FixSphGrains::drag_factors()
+{
+  const int n = (int) grains.size();
+  const size_t all = atom->nlocal + atom->nghost;
+  std::vector<double> k(n + 1), at_grains(n + 1);
+  const std::vector<double> rho = mean_of(std::vector<double>(atom->rho, atom->rho + all), 1);
   sd_sph_grain_phi(n, mean_phi.data(), own.data(), at_grains.data());
   const sd_sph_grains of_grains = are_grains();
-  const sd_sph_slip slip = {u.data(), v.data()}, slip_next = {u_next.data(), v_next.data()};
+  const Slip now = slip_of_now();
+  const sd_sph_slip slip = {now.water.data(), now.grains.data()};
   sd_sph_grain_drag(&law, n, &of_grains, &slip, rho.data(), at_grains.data(), k.data());
   check_bodies(k);
   for (int j = 0; j < n; j++) shown.writable(grains[j])[0] = at_grains[j];
+  return k;
+}
 
+/* Drag D at the velocities of the end of the step, which it makes itself: all grains that slow a particle
+ * slow it together. */
+void FixSphGrains::drags(const std::vector<double> &F, std::vector<double> &D)
+{
+  const Slip without = slip_without_drag(F);
+  const sd_sph_slip slip = {without.water.data(), without.grains.data()};
+  const std::vector<double> k = drag_factors();
   const sd_sph_around list = around();
+  std::vector<double> total_drag(points.size() + 1, 0.0);
   sd_sph_grain_load(&list, k.data(), total_drag.data());
   std::vector<double> slowed = at_atoms(total_drag, 1);
   reverse(slowed.data(), 1);
-  for (int i = 0; i < nlocal; i++)
+  for (int i = 0; i < atom->nlocal; i++)
     if (slowed[i] != 0.0) slowed[i] /= atom->rmass[i];
   forward(slowed.data(), 1);
   const std::vector<double> slowed_points = at_points(slowed, 1);
-  sd_sph_grain_drags(&list, dt, &slip_next, M.data(), k.data(), slowed_points.data(), D.data());
+  sd_sph_grain_drags(&list, update->dt, &slip, M.data(), k.data(), slowed_points.data(), D.data());
   give_back(D);
 }
 

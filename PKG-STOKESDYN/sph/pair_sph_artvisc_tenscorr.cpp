@@ -1,8 +1,6 @@
 #include "pair_sph_artvisc_tenscorr.h"
 
-#include "fix_sph_settings.h"
 #include "fix_sph_shift.h"
-#include "fixes.h"
 
 #include "sd_lattice.h"
 #include "sd_sph_wall.h"
@@ -13,7 +11,6 @@
 #include "error.h"
 #include "force.h"
 #include "memory.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "utils.h"
 
@@ -23,10 +20,6 @@
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
-
-const char *const PairSph::PARAMETER[NPARAMETERS] = {"h",    "c",      "alpha",
-                                                       "beta", "deltap", "mu", "tau",
-                                                       "n",    "mumax",  "lambda"};
 
 PairSph *PairSph::of(const Voice &voice)
 {
@@ -40,16 +33,11 @@ PairSph *PairSph::prepared(const Voice &voice)
   return pair;
 }
 
-bool PairSph::may_vanish(int parameter)
-{
-  return parameter == ALPHA || parameter == BETA || parameter == TAU;
-}
-
 /* pair_style hybrid copies all of this when it has read its own line, before init_style: rows of every
  * scheme have to fit, and the virial is summed pair by pair, as shift and correction put no force on
  * ghosts. */
 PairSph::PairSph(LAMMPS *lmp) :
-    GhostRows(lmp), voice(lmp, "Pair style " + std::string(STYLE)),
+    GhostRows(lmp), SphCoefficients(Voice(lmp, "Pair style " + std::string(STYLE))),
     shift_fix(voice, "SPH_SHIFT_STATE", FixSphShift::STYLE), friction_fix(voice, "SPH_FRICTION", FRICTION_STYLE),
     moved_box(lmp)
 {
@@ -69,10 +57,6 @@ PairSph::~PairSph()
   if (!allocated) return;
   memory->destroy(setflag);
   memory->destroy(cutsq);
-  for (int k = 0; k < NPARAMETERS; k++) {
-    memory->destroy(given[k]);
-    memory->destroy(table[k]);
-  }
 }
 
 // --- settings -----------------------------------------------------------------------------------
@@ -84,111 +68,14 @@ void PairSph::settings(int narg, char **arg)
   parse();
 }
 
-void PairSph::parse()
-{
-  for (double &value : defaults) value = NAN;
-  model = sd_sph_model();
-  shifts = pliant = corrects = implicit = false;
-  law = SD_SPH_NEWTON;
-  Keywords in(lmp, voice.command, args);
-  if (!in.next()) voice.fail("the kernel is missing: give cubicspline or wendland, then the smoothing length h");
-  const bool flat = in.is("cubicspline2d") || in.is("wendland2d");
-  model.dimension = flat ? 2 : domain->dimension;
-  if (in.is("cubicspline") || in.is("cubicspline2d"))
-    model.kernel = SD_SPH_CUBICSPLINE;
-  else if (in.is("wendland") || in.is("wendland2d"))
-    model.kernel = SD_SPH_WENDLAND;
-  else
-    voice.fail("unknown kernel '" + args[0] +
-               "': it must be one of cubicspline, wendland, cubicspline2d, wendland2d");
-  defaults[H] = in.positive();
-  in.parse({
-      {"artVisc",
-       [&] {
-         model.artvisc = 1;
-         defaults[ALPHA] = in.not_negative();
-         defaults[BETA] = in.not_negative();
-         model.eta = in.not_negative();
-       }},
-      {"tensCorr",
-       [&] {
-         model.tenscorr = 1;
-         model.epsilon = in.not_negative();
-         defaults[DELTAP] = in.positive();
-       }},
-      {"viscosity",
-       [&] {
-         defaults[MU] = in.positive();
-         model.friction = in.take("central") ? SD_SPH_CENTRAL : SD_SPH_LAPLACIAN;
-         if (model.friction == SD_SPH_LAPLACIAN) in.take("laplacian");
-       }},
-      {"rheology", [&] { read_law(in); }},
-      {"shift",
-       [&] {
-         // no word that is the name of a pair style: hybrid takes it for the next one
-         enum { NO, YES, PLIANT };
-         const size_t how = in.choice({"no", "yes", "pliant"});
-         shifts = how != NO;
-         pliant = how == PLIANT;
-       }},
-      {"correction", [&] { corrects = in.yes_no(); }},
-      {"implicit", [&] { implicit = in.yes_no(); }},
-  });
-  in.require(shifts || !corrects || !in.given("shift"),
-             "correction yes switches shift on: leave shift no out");
-  in.require(!pliant || !corrects,
-             "correction yes has a shift of its own, which has nothing that resists: leave shift pliant out");
-  shifts = shifts || corrects;
-  in.require(law == SD_SPH_NEWTON || model.friction,
-             "keyword rheology needs keyword viscosity, whose number is mu of the law");
-  in.require(!implicit || model.friction, "keyword implicit needs keyword viscosity, whose friction it makes implicit");
-}
-
-/* A law of viscosity. What it does not ask for has the value with which it does nothing. */
-void PairSph::read_law(Keywords &in)
-{
-  enum { POWER_LAW, BINGHAM, HERSCHEL_BULKLEY, CARREAU };
-  const size_t kind = in.choice({"power_law", "bingham", "herschel_bulkley", "carreau"});
-  law = kind == CARREAU ? SD_SPH_CARREAU : SD_SPH_HERSCHEL_BULKLEY;
-  defaults[TAU] = kind == BINGHAM || kind == HERSCHEL_BULKLEY ? in.not_negative() : 0.0;
-  defaults[LAMBDA] = kind == CARREAU ? in.positive() : 1.0;
-  defaults[N] = kind == BINGHAM ? 1.0 : in.positive();
-  defaults[MU_MAX] = in.positive();
-}
-
-sd_sph_rheology PairSph::rheology(int t) const
-{
-  return {law, table[MU][t][t], table[TAU][t][t], table[N][t][t], table[MU_MAX][t][t], table[LAMBDA][t][t]};
-}
-
-/* What the commands have not seen together, and what fix adapt sets. */
-void PairSph::check_law(int t) const
-{
-  const sd_sph_rheology fluid = rheology(t);
-  const Voice of = voice.of("keyword rheology: type " + std::to_string(t));
-  if (fluid.law == SD_SPH_CARREAU && fluid.n > 1.0)
-    of.fail("n = " + text(fluid.n) + " must be at most 1 with carreau");
-  if ((fluid.law == SD_SPH_CARREAU || fluid.n == 1.0) && fluid.mu_max < fluid.mu)
-    of.fail("mumax = " + text(fluid.mu_max) + " must not be smaller than mu = " + text(fluid.mu) +
-            ", the viscosity in fast shear: pair_coeff " + std::to_string(t) + " " + std::to_string(t) +
-            " mumax VALUE");
-}
-
 void PairSph::allocate()
 {
   allocated = 1;
   const int n = atom->ntypes + 1;
   memory->create(setflag, n, n, "pair:setflag");
   memory->create(cutsq, n, n, "pair:cutsq");
-  for (int k = 0; k < NPARAMETERS; k++) {
-    memory->create(given[k], n, n, "pair:given");
-    memory->create(table[k], n, n, "pair:table");
-  }
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < n; j++) {
-      setflag[i][j] = 0;
-      for (int k = 0; k < NPARAMETERS; k++) given[k][i][j] = table[k][i][j] = NAN;
-    }
+  for (int i = 0; i < n; i++) std::fill_n(setflag[i], n, 0);
+  SphCoefficients::allocate_tables(atom->ntypes);
 }
 
 void PairSph::coeff(int narg, char **arg)
@@ -200,22 +87,8 @@ void PairSph::coeff(int narg, char **arg)
   utils::bounds(FLERR, arg[0], 1, atom->ntypes, ilo, ihi, error);
   utils::bounds(FLERR, arg[1], 1, atom->ntypes, jlo, jhi, error);
 
-  double values[NPARAMETERS];
-  for (double &value : values) value = NAN;
   Keywords in(lmp, of_coeff.command, words(narg, arg), 2);
-  while (in.next()) {
-    int k = 0;
-    while (k < NPARAMETERS && !in.is(PARAMETER[k])) k++;
-    if (k == NPARAMETERS) in.unknown({PARAMETER, PARAMETER + NPARAMETERS});
-    if ((k == ALPHA || k == BETA) && !model.artvisc) in.refuse("the pair_style has no artVisc");
-    if (k == DELTAP && !model.tenscorr && !shifts) in.refuse("the pair_style has no tensCorr");
-    if (k == MU && !model.friction) in.refuse("the pair_style has no viscosity");
-    if (k > MU && law == SD_SPH_NEWTON) in.refuse("the pair_style has no rheology");
-    if (k >= MU && has_own_viscosities() && ihi < jlo)
-      in.refuse("with rheology and with implicit each particle has the viscosity of its own type, and a pair "
-                "their harmonic mean: give it by pair_coeff I I");
-    values[k] = may_vanish(k) ? in.not_negative() : in.positive();
-  }
+  const Values values = read_values(in, ihi < jlo);
 
   int count = 0;
   for (int i = ilo; i <= ihi; i++)
@@ -228,31 +101,6 @@ void PairSph::coeff(int narg, char **arg)
   if (count == 0)
     of_coeff.fail(std::string("there is no pair of types '") + arg[0] + " " + arg[1] +
                   "': the first type must not be larger than the second");
-}
-
-double PairSph::mixed(int k, int i, int j) const
-{
-  if (!std::isnan(given[k][i][j])) return given[k][i][j];
-  if (i == j) {
-    for (const auto *fix : fixes_of<FixPropertyGlobal>(lmp))
-      if (k == (fix->property == "sl" ? H : C)) return fix->of_type[i - 1];
-    return k == DELTAP && shifts && !model.tenscorr ? spacing(i) : defaults[k];
-  }
-  const double a = mixed(k, i, i), b = mixed(k, j, j);
-  // the stress is continuous between two viscosities, as that of two layers in series
-  return k == MU ? 2.0 * a * b / (a + b) : 0.5 * (a + b);
-}
-
-/* The distance of particles that W is compared with for shift. */
-double PairSph::spacing(int itype) const
-{
-  const double rho0 = pressures.size() == 1 ? pressures[0]->state.rho0 : 0.0;
-  if (!(rho0 > 0.0) || atom->rmass)
-    voice.fail("shift needs the initial distance of particles: give it by pair_coeff " +
-               std::to_string(itype) + " " + std::to_string(itype) +
-               " deltap VALUE; the style itself computes it, as (mass/rho0)^(1/dimension), only where "
-               "there is one fix sph/pressure with a rho0 and one mass per type");
-  return pow(atom->mass[itype] / rho0, 1.0 / model.dimension);
 }
 
 /* A cut-off (the skin is added) for which LAMMPS would make ghosts without end: no counter of its own
@@ -280,34 +128,9 @@ static void refuse_endless_ghosts(LAMMPS *lmp, const std::string &what, double l
 
 double PairSph::init_one(int i, int j)
 {
-  const std::string types = "types " + std::to_string(i) + " and " + std::to_string(j);
-  const Voice of = voice.of(types);
-  for (int k = 0; k < NPARAMETERS; k++) table[k][i][j] = table[k][j][i] = mixed(k, i, j);
-  // the commands have seen to this; fix adapt has not
-  auto require = [&](bool holds, const Voice &who, const std::string &what, double value,
-                     const char *rule) {
-    if (!holds) who.fail("keyword " + what + "'" + text(value) + "' must be " + rule);
-  };
-  if (model.artvisc) require(model.eta >= 0.0, voice, "artVisc: eta ", model.eta, ">= 0");
-  if (model.tenscorr)
-    require(model.epsilon >= 0.0, voice, "tensCorr: epsilon ", model.epsilon, ">= 0");
-  if (model.friction) require(defaults[MU] > 0.0, voice, "viscosity: ", defaults[MU], "> 0");
-  for (int k = 0; k < NPARAMETERS; k++) {
-    const double value = table[k][i][j];
-    require(std::isnan(value) || value > 0.0 || (may_vanish(k) && value == 0.0), of,
-            std::string(PARAMETER[k]) + ": ", value, may_vanish(k) ? ">= 0" : "> 0");
-  }
-  if (law != SD_SPH_NEWTON && i == j) check_law(i);
-  const double support = 2.0 * table[H][i][j];
-  refuse_endless_ghosts(lmp, of.command + ": the support 2 h = " + text(support), support);
-  const std::string cure = std::to_string(i) + " " + std::to_string(i) + " c VALUE";
-  if (model.artvisc && std::isnan(table[C][i][j]))
-    of.fail("keyword artVisc needs the speed of sound: pair_coeff " + cure);
-  if (model.delta > 0.0 && std::isnan(table[C][i][j]))
-    of.fail("delta of fix sph/density/continuity needs the speed of sound: pair_coeff " + cure);
-  if ((model.tenscorr || shifts) && !(table[DELTAP][i][j] < support))
-    of.fail("deltap " + text(table[DELTAP][i][j]) +
-            " must be smaller than the support 2 h = " + text(support));
+  const double support = mix(i, j);
+  refuse_endless_ghosts(lmp, voice.command + ": types " + std::to_string(i) + " and " + std::to_string(j) +
+                        ": the support 2 h = " + text(support), support);
   return support;
 }
 
@@ -316,11 +139,6 @@ double PairSph::viscosity(int i) const
   if (law != SD_SPH_NEWTON) return is_wall(i) ? 0.0 : viscosities[i];
   const int t = atom->type[i];
   return model.friction ? table[MU][t][t] : 0.0;
-}
-
-bool PairSph::has_sound_speed(int itype) const
-{
-  return !std::isnan(table[C][itype][itype]);
 }
 
 void PairSph::reverse(double *rows, int width, bool keep_largest)

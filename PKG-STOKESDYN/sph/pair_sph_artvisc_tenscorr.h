@@ -9,8 +9,8 @@
 #include "neighbours.h"
 #include "own_fix.h"
 #include "pair.h"
-#include "sd_sph_rheology.h"
 #include "sph.h"
+#include "sph_coefficients.h"
 
 #include <array>
 #include <string>
@@ -31,7 +31,7 @@ class FixSphPressure;
 class FixSphShift;
 class FixWallAdamiSph;
 
-class PairSph : public GhostRows<LAMMPS_NS::Pair> {
+class PairSph : public GhostRows<LAMMPS_NS::Pair>, public SphCoefficients {
  public:
   static constexpr const char *STYLE = Sph::PAIR_STYLE;
   /* of the fix that calls rub_implicitly(), fix_sph_friction.h */
@@ -70,15 +70,8 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair> {
   double pressure(int i) const { return P[i]; }
   /* What of them acts: pressures less this one. */
   double reference_pressure() const { return sd_sph_reference(&model, background()); }
-  double smoothing_length(int itype) const { return table[H][itype][itype]; }
-  double sound_speed(int itype) const { return table[C][itype][itype]; }
   /* Of particle i, of this rank, in the latest force; with a law of viscosity 0 for walls. */
   double viscosity(int i) const;
-  bool is_newtonian() const { return law == SD_SPH_NEWTON; }
-  bool rubs_implicitly() const { return implicit; }
-  bool has_laplacian() const { return model.friction == SD_SPH_LAPLACIAN; }
-  bool has_sound_speed(int itype) const;
-  bool takes(int itype) const { return table[H][itype][itype] > 0.0; }
   /* Of each owned particle: |h v.d / (r^2 + eta)|. Not inside compute. */
   void largest_approach(std::vector<double> &largest);
   /* rho0 of its equation of state; without one the density that it has. */
@@ -87,17 +80,13 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair> {
   double volume_of(int i) const;
   /* The smallest sd_sph_growth_limit of particles of these groups that are none of a wall. */
   double growth_limit(int bits) const;
-  /* W' for two particles of this type. */
-  double dW_dr(int itype, double r) const;
   /* Does particle i, of this rank or a ghost, stand in the layer of a fix sph/inlet or sph/outlet? */
   bool is_held(int i) const;
   /* Is particle i one of this style; one of a wall? */
   bool is_particle(int i) const;
   bool is_of_wall(int i) const { return is_wall(i); }
   bool has_ends() const { return !inlets.empty() || !outlets.empty(); }
-  /* Both for fix sph/tension: do particles keep apart by shift, without correction; are there fluids of
-   * different density? */
-  bool finds_surface() const { return shifts && !corrects; }
+  /* For fix sph/tension: are there fluids of different density? */
   bool has_fluids() const { return sd_sph_of_fluids(&model) != 0; }
   /* Of particle i that is none of a wall: that of its equation of state at its density, and the
    * viscosity that shear feels, with that of artVisc: rho alpha c h/(2 (D+2)). */
@@ -121,34 +110,10 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair> {
   bool moments(std::vector<double> &M);
   /* Does this run go on where the last one ended? */
   bool resumes() const;
-  /* the kernel, for any place */
-  sd_sph_kernel kernel() const { return model.kernel; }
-  int dimension() const { return model.dimension; }
 
  private:
-  enum Parameter { H, C, ALPHA, BETA, DELTAP, MU, TAU, N, MU_MAX, LAMBDA, NPARAMETERS };
-  static const char *const PARAMETER[NPARAMETERS];
-  const Voice voice;
   const OwnFix shift_fix, friction_fix;
-
-  // settings
-  std::vector<std::string> args;    // of pair_style, for restart files
-  bool shifts = false, pliant = false, corrects = false, implicit = false;
-  sd_sph_law law = SD_SPH_NEWTON;
-  double defaults[NPARAMETERS];
-  // by pair_coeff (NaN: not given), and in use
-  double **given[NPARAMETERS] = {}, **table[NPARAMETERS] = {};
-  sd_sph_model model = {};
-  void parse();
-  void read_law(Keywords &in);
-  static bool may_vanish(int parameter);
-  void check_law(int itype) const;
-  /* Has each particle a viscosity, of its type and perhaps of its shear rate, in place of pairs of types? */
-  bool has_own_viscosities() const { return implicit || law != SD_SPH_NEWTON; }
-  sd_sph_rheology rheology(int itype) const;
   void allocate();
-  double spacing(int itype) const;
-  double mixed(int parameter, int i, int j) const;
 
   // the fixes that take part; set in init_style
   std::vector<FixSphPressure *> pressures;
@@ -222,6 +187,7 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair> {
   bool used(int itype) const;
   void look_at_densities(int n);
   void pack_volumes();
+  void look_at_beginning();
   void look_at_scene();
   bool fills_space();
   void look_at_rest();
@@ -243,6 +209,7 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair> {
   bool stands(int i) const;
   bool has_velocity(int i) const;
   const double *displacement_rates();
+  void find_densities();
   void density_step();
   void sum_rates(double margin);
   void sum_middle(double margin);

@@ -45,6 +45,20 @@ void PairSph::look_at_densities(int n)
 
 // --- at the beginning of a run ---------------------------------------------------------------------
 
+/* Before any sum, but for look_at_bodies(), which needs the pressures of the first force */
+void PairSph::look_at_beginning()
+{
+  look_at_sound();
+  look_at_widths();
+  look_at_plane();
+  look_at_idlers();
+  look_at_fluids();
+  if (!resumes()) look_at_scene();
+  if (wall) look_at_walls();
+  if (wall) tell_of_belts();
+  if (law != SD_SPH_NEWTON && !implicit) look_at_friction();
+}
+
 /* Both speeds of sound should be one: limits of the time step, artVisc and delta go by that of
  * pair_coeff, the fluid by that of the equation of state. */
 void PairSph::look_at_sound()

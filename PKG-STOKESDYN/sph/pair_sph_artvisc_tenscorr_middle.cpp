@@ -156,6 +156,16 @@ void PairSph::close_sums()
   sd_sph_diffusion(&model, &close, &particles, rate.data());
 }
 
+/* Of now, by all fixes that make them; x4 then has the places of now. */
+void PairSph::find_densities()
+{
+  if (leapfrog) density_step();
+  sd_sph_pack_x(particles.n, Sph::numbers(atom->x), nullptr, nullptr, 0.0, x4.data());
+  if (summation) sum_densities(summation->groupbit, false);
+  if (filter && !update->setupflag && update->ntimestep % filter->every == 0)
+    sum_densities(filter->groupbit, true);
+}
+
 const double *PairSph::shift() const
 {
   return state ? state->du() : nullptr;

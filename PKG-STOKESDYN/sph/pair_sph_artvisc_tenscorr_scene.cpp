@@ -77,6 +77,7 @@ void PairSph::find_fixes()
   pressures = fixes_of<FixSphPressure>(lmp);
   if (pressures.empty())
     voice.fail("no fix sph/pressure: it sets the pressure that belongs to a density");
+  rho0 = pressures.size() == 1 ? pressures[0]->state.rho0 : 0.0;
   continuity = only<FixSphDensityContinuity>(": only one can set the density");
   summation = only<FixSphDensitySummation>(": only one can set the density");
   if (!continuity && !summation)

@@ -35,25 +35,11 @@ void PairSph::compute(int eflag, int vflag)
   look_at_densities(atom->nlocal);
   if (grains) grains->find_fractions();
   prepare();
-  if (update->setupflag) {
-    look_at_sound();
-    look_at_widths();
-    look_at_plane();
-    look_at_idlers();
-    look_at_fluids();
-    if (!resumes()) look_at_scene();
-    if (wall) look_at_walls();
-    if (wall) tell_of_belts();
-    if (law != SD_SPH_NEWTON && !implicit) look_at_friction();
-  }
+  if (update->setupflag) look_at_beginning();
   if (needs_velocity) estimate_velocities();
   if (leapfrog && update->setupflag && has_walls()) settle_walls();
 
-  if (leapfrog) density_step();
-  sd_sph_pack_x(particles.n, Sph::numbers(atom->x), nullptr, nullptr, 0.0, x4.data());
-  if (summation) sum_densities(summation->groupbit, false);
-  if (filter && !update->setupflag && update->ntimestep % filter->every == 0)
-    sum_densities(filter->groupbit, true);
+  find_densities();
   pressures_of_all();
   if (has_walls()) wall_particles();
   forces(continuity && !leapfrog);
@@ -232,9 +218,4 @@ bool PairSph::moments(std::vector<double> &M)
   sd_sph_moments(&model, &pairs, &particles, M.data());
   reverse(M.data(), 6);
   return true;
-}
-
-double PairSph::dW_dr(int itype, double r) const
-{
-  return r * sd_sph_dW_over_r(model.kernel, model.dimension, r, table[H][itype][itype]);
 }
