@@ -282,38 +282,38 @@ void sd_clump_free(sd_clump *clump)
   *clump = (sd_clump){0};
 }
 
-/* F_k = R table_k in, for the first columns */
-static inline void evaluate(const sd_clump *clump, const double R[9], const double *in, int columns, int width,
-                            double *restrict F, double *restrict T)
+/* F_k = eta R table_k in, for the first columns; in is scaled */
+static inline void evaluate(const sd_clump_placed *placed, double *in, int columns, const sd_clump_rows *out)
 {
-  for (int k = 0; k < clump->n; k++) {
-    const double *restrict t = clump->table + 6 * SD_CLUMP_COLUMNS * (size_t) k;
+  const double *R = placed->pose;
+  double *restrict F = out->F, *restrict T = out->T;
+  for (int c = 0; c < columns; c++) in[c] *= placed->eta;
+  for (int k = 0; k < placed->clump->n; k++) {
+    const double *restrict t = placed->clump->table + 6 * SD_CLUMP_COLUMNS * (size_t) k;
     double f[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     for (int c = 0; c < columns; c++)
       for (int p = 0; p < 6; p++) f[p] += t[6 * c + p] * in[c];
-    sd_multiply3(R, f, F + (long) width * k);
-    if (T) sd_multiply3(R, f + 3, T + (long) width * k);
+    sd_multiply3(R, f, F + (long) out->width * k);
+    if (T) sd_multiply3(R, f + 3, T + (long) out->width * k);
   }
 }
 
-void sd_clump_forces_rigid(const sd_clump *clump, const double R[9], double eta, const double s0[3],
-                           const double W[3], int width, double *F, double *T)
+void sd_clump_forces_rigid(const sd_clump_placed *placed, const double s0[3], const double W[3],
+                           const sd_clump_rows *out)
 {
   double in[RIGID];
-  sd_multiply3t(R, s0, in);
-  sd_multiply3t(R, W, in + 3);
-  for (int c = 0; c < RIGID; c++) in[c] *= eta;
-  evaluate(clump, R, in, RIGID, width, F, T);
+  sd_multiply3t(placed->pose, s0, in);
+  sd_multiply3t(placed->pose, W, in + 3);
+  evaluate(placed, in, RIGID, out);
 }
 
 /* Slip s0 + A x into the axes of the shape */
-void sd_clump_forces(const sd_clump *clump, const double R[9], double eta, const double s0[3],
-                     const double A[9], int width, double *F, double *T)
+void sd_clump_forces(const sd_clump_placed *placed, const double s0[3], const double A[9],
+                     const sd_clump_rows *out)
 {
   double W[3], in[SD_CLUMP_COLUMNS];
-  sd_clump_split_gradient(R, A, W, in + 6);
-  sd_multiply3t(R, s0, in);
-  sd_multiply3t(R, W, in + 3);
-  for (int c = 0; c < SD_CLUMP_COLUMNS; c++) in[c] *= eta;
-  evaluate(clump, R, in, SD_CLUMP_COLUMNS, width, F, T);
+  sd_clump_split_gradient(placed->pose, A, W, in + 6);
+  sd_multiply3t(placed->pose, s0, in);
+  sd_multiply3t(placed->pose, W, in + 3);
+  evaluate(placed, in, SD_CLUMP_COLUMNS, out);
 }

@@ -64,15 +64,29 @@ sd_status sd_clump_create(const sd_shape *shape, const sd_clump_options *options
                           sd_clump *clump, sd_clump_need *need);
 void sd_clump_free(sd_clump *clump);
 
-/* Force F [3] and torque T [3] (NULL: not wanted) on each sphere, in the shape's order, about its own
- * centre, in the lab: those of sphere k at F + width k and T + width k.
- *   R [9]                    pose: lab = R shape (sd_shape_pose);  eta: viscosity
- *   s0 [3], W [3], A [9]     slip, in the lab; A row-major
- * The rigid version is for slip without strain. No allocation. */
-void sd_clump_forces_rigid(const sd_clump *clump, const double R[9], double eta, const double s0[3],
-                           const double W[3], int width, double *F, double *T);
-void sd_clump_forces(const sd_clump *clump, const double R[9], double eta, const double s0[3],
-                     const double A[9], int width, double *F, double *T);
+/* A clump in its pose (sd_shape_pose), R row-major and the centroid c, lab = c + R shape, in a fluid of
+ * viscosity eta */
+typedef struct {
+  const sd_shape *shape;
+  const sd_clump *clump;
+  /* [12] */
+  const double *pose;
+  double eta;
+} sd_clump_placed;
+
+/* What is told of its spheres, in the shape's order, of sphere k from width k on: v [6] velocity and angular
+ * velocity; F, T [3] force and torque of the fluid on it about its own centre, T NULL: not wanted */
+typedef struct {
+  int width;
+  double *v, *F, *T;
+} sd_clump_rows;
+
+/* F and T under the slip s0 [3], and W [3] or A [9], row-major; all in the lab. The rigid version is for slip
+ * without strain. Neither shape nor c is read. No allocation. */
+void sd_clump_forces_rigid(const sd_clump_placed *placed, const double s0[3], const double W[3],
+                           const sd_clump_rows *out);
+void sd_clump_forces(const sd_clump_placed *placed, const double s0[3], const double A[9],
+                     const sd_clump_rows *out);
 
 /* 6x6 resistance about the point at d from the one that R is about. */
 void sd_resistance_shift(const double R[36], const double d[3], double out[36]);

@@ -93,9 +93,9 @@ static void drag_of_slip(const sd_clump_placed *placed, int strains, const doubl
   sd_minus(u, U, slip);
   for (int d = 0; d < 9; d++) A[d] = G[d] - spin[d];
   if (strains)
-    sd_clump_forces(placed->clump, placed->pose, placed->eta, slip, A, out->width, out->F, out->T);
+    sd_clump_forces(placed, slip, A, out);
   else
-    sd_clump_forces_rigid(placed->clump, placed->pose, placed->eta, slip, minus_w, out->width, out->F, out->T);
+    sd_clump_forces_rigid(placed, slip, minus_w, out);
 }
 
 void sd_clump_drag(const sd_clump_placed *placed, const sd_clump_motion *m, const sd_clump_rows *out)

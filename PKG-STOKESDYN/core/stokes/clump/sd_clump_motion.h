@@ -24,22 +24,6 @@ typedef struct {
   const double *u, *gradient;
 } sd_clump_motion;
 
-/* A clump in its pose, R row-major and the centroid c, in a fluid of viscosity eta */
-typedef struct {
-  const sd_shape *shape;
-  const sd_clump *clump;
-  /* [12] */
-  const double *pose;
-  double eta;
-} sd_clump_placed;
-
-/* What is told of its spheres, of sphere k from width k on: v [6] velocity and angular velocity; F, T [3]
- * force and torque of the fluid on it, T NULL: not wanted */
-typedef struct {
-  int width;
-  double *v, *F, *T;
-} sd_clump_rows;
-
 /* Velocity U of the centroid and angular velocity W of the clump in pose R, c. */
 void sd_clump_velocity(const sd_shape *shape, const sd_clump_motion *m, const double R[9],
                        const double c[3], double U[3], double W[3]);

@@ -76,8 +76,8 @@ static sd_status bl_invert(sd_blocks *b, const sd_precondition_case *c, int k)
   const int m = (int) (b->first[k + 1] - b->first[k]);
   double *A = b->inverse + b->start[k];
   if (m == 0) return SD_OK;
-  const sd_status status =
-      sd_unit_cholesky(&c->law, &c->spheres, b->member + b->first[k], m, b->width, A);
+  const sd_unit_submatrix clump = {&c->law, &c->spheres, b->member + b->first[k], m, b->width};
+  const sd_status status = sd_unit_cholesky(&clump, A);
   if (status != SD_OK) return status;
   return sd_cholesky_inverse(b->width * m, A) == SD_OK ? SD_OK : SD_EINDEFINITE;
 }

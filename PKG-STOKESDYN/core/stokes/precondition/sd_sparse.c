@@ -56,17 +56,16 @@ static void sp_store(const float *X, int m, int width, float *value)
         value[size * l + lda * q + p] = X[width * (m * (long) q + m - 1 - l) + p];
 }
 
-/* R of m spheres, in single precision where that will do. most: of any column, for memory that is
+/* R of these spheres, in single precision where that will do. most: of any column, for memory that is
  * seldom needed. */
-static sd_status local_factor(const sd_law *law, const sd_spheres *s, const int *member, int m,
-                              int width, int most, float *A, double **in_double)
+static sd_status local_factor(const sd_unit_submatrix *c, int most, float *A, double **in_double)
 {
-  const sd_status status = sd_unit_cholesky_single(law, s, member, m, width, A);
+  const sd_status status = sd_unit_cholesky_single(c, A);
   if (status != SD_ESINGULAR) return status;
-  const size_t largest = (size_t) width * (size_t) most, size = (size_t) width * (size_t) m;
+  const size_t largest = (size_t) c->width * (size_t) most, size = (size_t) c->width * (size_t) c->m;
   if (!*in_double) *in_double = malloc(sizeof(double) * largest * largest);
   if (!*in_double) return SD_ENOMEMORY;
-  const sd_status second = sd_unit_cholesky(law, s, member, m, width, *in_double);
+  const sd_status second = sd_unit_cholesky(c, *in_double);
   for (size_t p = 0; p < size * size && second == SD_OK; p++) A[p] = (float) (*in_double)[p];
   return second;
 }
@@ -88,7 +87,8 @@ static sd_status sp_fill(sd_sparse *f, const sd_law *law, const sd_spheres *s)
     const int *row = rows->row + rows->first[k];
     const int m = (int) (rows->first[k + 1] - rows->first[k]);
     for (int l = 0; l < m; l++) member[l] = row[m - 1 - l];
-    status = local_factor(law, s, member, m, f->width, rows->largest, A, &in_double);
+    const sd_unit_submatrix seen = {law, s, member, m, f->width};
+    status = local_factor(&seen, rows->largest, A, &in_double);
     if (status != SD_OK) break;
     last_columns(A, f->width * m, f->width, X);
     sp_store(X, m, f->width, f->value + floats * (size_t) rows->first[k]);

@@ -60,10 +60,7 @@ static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int
   const double R = sqrt(sd_dot(r, r)), inv = R > 0.0 ? 1.0 / R : 0.0;
   const double h[3] = {r[0] * inv, r[1] * inv, r[2] * inv};
   double f, g;
-  if (law->tensor == SD_TENSOR_OSEEN)
-    sd_oseen_radial(R, &f, &g);
-  else
-    sd_rpy_radial(R, ai, aj, &f, &g);
+  sd_tensor_radial(law->tensor, R, ai, aj, &f, &g);
   const double taper = law->taper == SD_TAPER_NONE ? 1.0 : sd_taper_factor(law, R);
   const double c = sqrt(ai * aj) * taper;
   put_isotropic(c, f, g, h, B);
@@ -89,11 +86,13 @@ static inline void un_own_block(const sd_law *law, const sd_spheres *s, int i, i
   un_add_image(law, x, s->a[i], x, s->a[i], 1.0, width, B);
 }
 
-/* Lower triangle of C of the spheres member[0 ... m-1], with 1 + extra on the diagonal; into one of
- * A, A_single. */
-static inline void un_fill(const sd_law *law, const sd_spheres *s, const int *member, int m, int width,
-                           double extra, double *A, float *A_single)
+/* Its lower triangle, with 1 + extra on the diagonal; into one of A, A_single. width: that of c, by which
+ * the compiler makes a copy each. */
+static inline void un_fill(const sd_unit_submatrix *c, int width, double extra, double *A, float *A_single)
 {
+  const sd_law *law = c->law;
+  const sd_spheres *s = c->spheres;
+  const int *member = c->member, m = c->m;
   const long lda = width * (long) m;
   double B[36];
   for (int j = 0; j < m; j++)
@@ -113,33 +112,30 @@ static inline void un_fill(const sd_law *law, const sd_spheres *s, const int *me
 }
 
 /* The diagonal that is added is first none, then what rounding may have taken off an eigenvalue of
- * a large block; more than that is a matrix that is not definite by itself. Of width 3 and 6 the
- * compiler makes a copy each. */
-sd_status sd_unit_cholesky(const sd_law *law, const sd_spheres *s, const int *member, int m,
-                           int width, double *A)
+ * a large block; more than that is a matrix that is not definite by itself. */
+sd_status sd_unit_cholesky(const sd_unit_submatrix *c, double *A)
 {
   static const double extra[] = {0.0, 1e-12, 1e-9, 1e-6};
   for (int k = 0; k < 4; k++) {
-    if (width == 3)
-      un_fill(law, s, member, m, 3, extra[k], A, 0);
+    if (c->width == 3)
+      un_fill(c, 3, extra[k], A, 0);
     else
-      un_fill(law, s, member, m, 6, extra[k], A, 0);
-    const sd_status status = sd_cholesky(width * m, A);
+      un_fill(c, 6, extra[k], A, 0);
+    const sd_status status = sd_cholesky(c->width * c->m, A);
     if (status != SD_ESINGULAR) return status;
   }
   return SD_EINDEFINITE;
 }
 
-sd_status sd_unit_cholesky_single(const sd_law *law, const sd_spheres *s, const int *member, int m,
-                                  int width, float *A)
+sd_status sd_unit_cholesky_single(const sd_unit_submatrix *c, float *A)
 {
   /* Pivots below this have lost most of their digits. */
   const float lost = 0.003f;
-  const long size = width * (long) m;
-  if (width == 3)
-    un_fill(law, s, member, m, 3, 0.0, 0, A);
+  const long size = c->width * (long) c->m;
+  if (c->width == 3)
+    un_fill(c, 3, 0.0, 0, A);
   else
-    un_fill(law, s, member, m, 6, 0.0, 0, A);
+    un_fill(c, 6, 0.0, 0, A);
   const sd_status status = sd_cholesky_single((int) size, A);
   for (long p = 0; p < size && status == SD_OK; p++)
     if (!(A[p * (size + 1)] > lost)) return SD_ESINGULAR;

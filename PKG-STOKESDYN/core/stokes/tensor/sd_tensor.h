@@ -125,6 +125,15 @@ static inline void sd_oseen_radial(double R, double *f, double *g)
   *f = *g = 0.75 / R;
 }
 
+/* Of either */
+static inline void sd_tensor_radial(sd_tensor kind, double R, double ai, double aj, double *f, double *g)
+{
+  if (kind == SD_TENSOR_RPY)
+    sd_rpy_radial(R, ai, aj, f, g);
+  else
+    sd_oseen_radial(R, f, g);
+}
+
 /* The whole 3x3 block, row-major, velocity/force. r [3] = x_i - x_j; eta > 0 dynamic viscosity.
  * Never fails for RPY. */
 void sd_tensor_uf(sd_tensor kind, const double r[3], double ai, double aj, double eta, double M[9]);

@@ -73,10 +73,12 @@ static void forces_add_up_to_the_matrix(void **state)
     for (int d = 0; d < 3; d++) c[d] += x[3 * k + d] / n;
   for (int trial = 0; trial < 20; trial++) {
     double Q[9], s0[3], A[9], E[9], in[12], total[6] = {0.0};
+    const sd_clump_placed placed = {.clump = &clump, .pose = Q, .eta = eta};
+    const sd_clump_rows rows = {3, NULL, F, T}, rows_rigid = {3, NULL, F2, T2};
     random_rotation(&seed, Q);
     for (int d = 0; d < 3; d++) s0[d] = uniform(&seed, -1.0, 1.0);
     for (int d = 0; d < 9; d++) A[d] = uniform(&seed, -1.0, 1.0);
-    sd_clump_forces(&clump, Q, eta, s0, A, 3, F, T);
+    sd_clump_forces(&placed, s0, A, &rows);
     for (int k = 0; k < n; k++) {
       double arm[3], lab[3], torque[3];
       for (int d = 0; d < 3; d++) arm[d] = x[3 * k + d] - c[d];
@@ -112,8 +114,8 @@ static void forces_add_up_to_the_matrix(void **state)
 
     /* slip of a rigid motion alone: the short way gives the same */
     const double spin[9] = {0, -W[2], W[1], W[2], 0, -W[0], -W[1], W[0], 0};
-    sd_clump_forces(&clump, Q, eta, s0, spin, 3, F, T);
-    sd_clump_forces_rigid(&clump, Q, eta, s0, W, 3, F2, T2);
+    sd_clump_forces(&placed, s0, spin, &rows);
+    sd_clump_forces_rigid(&placed, s0, W, &rows_rigid);
     for (int k = 0; k < 3 * n; k++) {
       CHECK_NEAR(F2[k], F[k], 1e-12 * clump.R[0]);
       CHECK_NEAR(T2[k], T[k], 1e-12 * clump.R[0]);

@@ -49,7 +49,8 @@ static void shell_one_is_the_ordinary_solve(void **state)
   sd_solve_report report;
   assert_int_equal(sd_solve_gradients(&S, slip, 1e-12, 1000, F, work, &report), SD_OK);
   sd_clump clump = solve(p.n, x, a, 1, 0);
-  sd_clump_forces(&clump, R, eta, s0, A, 3, G, T);
+  const sd_clump_placed placed = {.clump = &clump, .pose = R, .eta = eta};
+  sd_clump_forces(&placed, s0, A, &(sd_clump_rows){3, NULL, G, T});
   double largest = 0.0;
   for (int k = 0; k < 3 * p.n; k++) largest = fmax(largest, fabs(F[k]));
   for (int k = 0; k < 3 * p.n; k++) {
