@@ -91,13 +91,15 @@ static void check_law(const scene *s, const sd_law *law, int m, int floats)
   }
 }
 
-/* Tapers as far as half of the scene, and some radii where all stand at one place */
+/* Tapers as far as half of the scene, and some radii where all stand at one place. What they do in a vector has no
+ * part in where vectors are: with sanitizers small scenes have them. */
 static void check_scene(const scene *s, int floats)
 {
   double across = 10.0;
   for (int i = 0; i < 3 * s->n; i++) across = fmax(across, s->x[i] - s->x[i % 3]);
+  const int last = CHECK_SIZE(SD_TAPER_SPHERICAL, s->n < 100 ? SD_TAPER_SPHERICAL : SD_TAPER_NONE);
   for (int m = 3; m <= 6; m += 3)
-    for (int taper = SD_TAPER_NONE; taper <= SD_TAPER_SPHERICAL; taper++)
+    for (int taper = SD_TAPER_NONE; taper <= last; taper++)
       check_law(s, &(sd_law){.tensor = SD_TENSOR_RPY, .taper = taper, .range = 0.5 * across}, m, floats);
 }
 
