@@ -85,6 +85,7 @@ static std::vector<Guest> guests_of(LAMMPS *lmp, const Neighbour &row)
   if (row.kind == Neighbour::BOND)
     for (const auto &each : Compat::bond_styles(lmp->force))
       add(each.first, "bond_style " + each.first, [&](Guest &guest) { guest.bond = each.second; });
+  if (row.kind == Neighbour::COMMAND) add(row.styles, row.styles, [](Guest &) {});
   if (row.kind == Neighbour::ATOM)
     for (const std::string &style : words_of(row.styles))
       if (lmp->atom->style_match(style.c_str())) add(style, "atom_style " + style, [](Guest &) {});

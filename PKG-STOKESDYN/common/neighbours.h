@@ -21,7 +21,7 @@ class Pair;
 namespace StokesDyn {
 
 /* A command of LAMMPS that stands beside a style of ours; of the pointers one is set, none for an
- * atom style. */
+ * atom style and a command. */
 struct Guest {
   LAMMPS_NS::LAMMPS *lmp;
   std::string style;
@@ -36,7 +36,8 @@ struct Guest {
 };
 
 struct Neighbour {
-  enum Kind { FIX, PAIR, BOND, COMPUTE, ATOM };
+  /* COMMAND: a setting that is always there, of which `matters` says what it does */
+  enum Kind { FIX, PAIR, BOND, COMPUTE, ATOM, COMMAND };
   /* FINE: a row for the page, of what one might doubt */
   enum Verdict { FINE, WARNING, ERROR };
   enum : unsigned { ANYWHERE = 0 };

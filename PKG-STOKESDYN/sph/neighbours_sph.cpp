@@ -1,6 +1,7 @@
 #include "neighbours_sph.h"
 
 #include "fix_sph_grains.h"
+#include "lost_pairs.h"
 #include "pair_sph_artvisc_tenscorr.h"
 
 #include "fix.h"
@@ -52,6 +53,21 @@ const std::vector<Neighbour> &sph_neighbours()
       {N::FIX, "rheo*", 0, N::ERROR,
        "moves particles and advances their density, which is the task of fix nve/sph here: take it "
        "out, or use pair_style rheo"},
+      // who sees whom
+      {N::COMMAND, "neigh_modify", 0, N::ERROR,
+       "has {}: take it out; only particles of fix wall/adami/sph may be kept from each other", loses_by_exclude,
+       N::ANYWHERE},
+      {N::COMMAND, "neigh_modify", 0, N::ERROR,
+       "has {}: name a group with all particles of water and walls, or take it out", loses_by_include, N::ANYWHERE},
+      {N::COMMAND, "comm_modify", 0, N::ERROR,
+       "has {}: name a group with all particles of water and walls, or take it out", loses_ghosts, N::ANYWHERE},
+      {N::COMMAND, "special_bonds", 0, N::ERROR,
+       "has a factor 0 and keeps {} from those that it is bonded to, which it must see: use special_bonds lj/coul "
+       "1 1 1",
+       loses_by_bonds, N::ANYWHERE},
+      {N::COMMAND, "pair_coeff", 0, N::WARNING,
+       "leaves out {}: where they meet, one flows through the other. Use pair_coeff I J sph/artVisc/tensCorr for "
+       "both types", loses_by_types, N::ANYWHERE},
       // another motion
       {N::FIX, "sph", CONTINUITY, N::WARNING,
        "lets sound grow at time steps above {} (3 alpha h/(8 c) in two dimensions, less in three), "

@@ -85,6 +85,8 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair>, public SphCoefficients {
   /* Is particle i one of this style; one of a wall? */
   bool is_particle(int i) const;
   bool is_of_wall(int i) const { return is_wall(i); }
+  /* Is it at rest (nve/sph/stationary), and does its density not count those of its own kind? */
+  bool rests_alone(int i) const;
   bool has_ends() const { return !inlets.empty() || !outlets.empty(); }
   /* For fix sph/tension: are there fluids of different density? */
   bool has_fluids() const { return sd_sph_of_fluids(&model) != 0; }
@@ -132,11 +134,13 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair>, public SphCoefficients {
   double whole = 0.0;
   // The fluid fills its vessel: with correction, or with shift and P0 > 0, under which no surface is at rest.
   bool full = false;
-  int pressure_bits = 0, leapfrog_bits = 0, own_vest_bits = 0;
+  int pressure_bits = 0, leapfrog_bits = 0, own_vest_bits = 0, rest_bits = 0;
   // groups of all fixes that displace particles
   int displaced_bits = 0;
   bool leapfrog = false, needs_velocity = false, measured = false;
   LAMMPS_NS::bigint dangerous_builds = 0;
+  // Has LAMMPS set up this run? rerun initialises, and then computes the forces of one snapshot after the other.
+  bool begun = false;
   Neighbourhood neighbourhood;
   // comm_modify vel was no
   bool asked_for_velocities = false;

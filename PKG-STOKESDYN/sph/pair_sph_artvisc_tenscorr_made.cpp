@@ -66,7 +66,7 @@ bool PairSph::fills_space()
   reverse(M.data(), 6);
   double inside = 0.0, filled = 0.0;
   for (size_t i = 0; i < (size_t) atom->nlocal; i++) {
-    if (!used(atom->type[i]) || is_wall((int) i)) continue;
+    if (!used(atom->type[i]) || is_wall((int) i) || rests_alone((int) i)) continue;
     const double here = sd_sph_filled(&model, &particles, (int) i, &around_each[4 * i], &M[6 * i]);
     inside += here > 0.0;
     filled += here;

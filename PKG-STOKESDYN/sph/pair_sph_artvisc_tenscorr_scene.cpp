@@ -57,12 +57,13 @@ void PairSph::init_style()
   if (needs_velocity && !comm->ghost_velocity) comm->ghost_velocity = asked_for_velocities = 1;
   if (neighbor->skin <= 0.0)
     voice.fail("command neighbor: a skin of 0 is too small; a tenth of h is usual");
-  if (!neighbor->dist_check && std::max(neighbor->every, neighbor->delay) > 1)
+  if (neighbor->build_once || (!neighbor->dist_check && std::max(neighbor->every, neighbor->delay) > 1))
     voice.warn(
-        "with neigh_modify check no, LAMMPS does not notice when the neighbour list is outdated");
+        "with neigh_modify once yes or check no, LAMMPS does not notice when the neighbour list is outdated");
   dangerous_builds = neighbor->ndanger;
   Compat::request_half_list(neighbor, this, instance_me, !shared);
   around_of = -1;
+  begun = false;
 }
 
 template <class Style> Style *PairSph::only(const char *otherwise)
@@ -130,11 +131,18 @@ void PairSph::find_integrators()
     voice.warn("delta of fix sph/density/continuity has no effect with fix sph; use fix nve/sph");
   leapfrog_bits = Sph::groups(moving) | Sph::groups(stationary);
   own_vest_bits = Sph::groups(moving) | Sph::groups(theirs);
+  rest_bits = Sph::groups(stationary) | Sph::groups(their_stationary);
   displaced_bits = 0;
   for (int k = 0; k < lmp->modify->nfix; k++) {
     const Fix *fix = lmp->modify->fix[k];
     if (fix->time_integrate && !strstr(fix->style, "stationary")) displaced_bits |= fix->groupbit;
   }
+}
+
+bool PairSph::rests_alone(int i) const
+{
+  const bool counts_all = summation || filter || model.delta > 0.0;
+  return !counts_all && (atom->mask[i] & rest_bits) && !(atom->mask[i] & own_vest_bits);
 }
 
 /* What shift, correction and volume yes need, and what they do not go with; planes: there are walls without
@@ -251,6 +259,13 @@ void PairSph::check_groups()
       voice.fail("atom " + std::to_string(both) + " is in the groups of two fixes sph/pressure");
     pressure_bits |= fix->groupbit;
   }
+  int moved = 0;
+  for (const auto *fix : Sph::integrators(lmp)) {
+    if (const tagint both = in_both(moved, fix->groupbit))
+      voice.fail("atom " + std::to_string(both) + " is integrated twice, by " + name_of(fix) + " and by another "
+                 "fix: it would go twice as far in a step; take one of the two out");
+    moved |= fix->groupbit;
+  }
   if (!wall) return;
   for (const auto *fix : Sph::integrators(lmp))
     if (const tagint both = in_both(wall->groupbit, fix->groupbit))
@@ -292,16 +307,19 @@ void PairSph::check_layers() const
                            "its own");
 }
 
-/* The first atom in both of these sets of groups, 0: there is none. */
+/* The first particle in both of these sets of groups, 0: there is none. */
 tagint PairSph::in_both(int bits, int more_bits) const
 {
-  return first_atom(lmp, [=](int i) { return (atom->mask[i] & bits) && (atom->mask[i] & more_bits); });
+  return first_atom(lmp, [=](int i) {
+    return (atom->mask[i] & bits) && (atom->mask[i] & more_bits) && used(atom->type[i]);
+  });
 }
 
 /* Here and not in init_style, since the domain learns of fix deform after that, and pair styles below a
  * hybrid of their types. */
 void PairSph::setup()
 {
+  begun = true;
   check_layers();
   neighbourhood.look(voice, sph_neighbours(), (continuity ? CONTINUITY : 0u) | (grains ? GRAINS : 0u) |
                     (fixes_of(lmp, FixSphTension::STYLE).empty() ? 0u : TENSION), [this](int i) {

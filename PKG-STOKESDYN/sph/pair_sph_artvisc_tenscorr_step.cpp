@@ -26,6 +26,9 @@ using namespace StokesDyn;
 void PairSph::compute(int eflag, int vflag)
 {
   require_prepared();
+  if (continuity && !begun)
+    voice.fail("cannot be used with rerun: a dump file has no densities for fix sph/density/continuity; use pair_style "
+               "zero for what needs no forces of the water, or restart files");
   ev_init(eflag, vflag);
   listed = {atom->nlocal, atom->nghost};
   check_list();

@@ -6,7 +6,8 @@ import textwrap
 
 PACKAGE = pathlib.Path(__file__).resolve().parents[2] / "PKG-STOKESDYN"
 PAGE = PACKAGE / "doc" / "howto_trouble.md"
-KINDS = {"FIX": "fix", "PAIR": "pair_style", "BOND": "bond_style", "COMPUTE": "compute", "ATOM": "atom_style"}
+KINDS = {"FIX": "fix", "PAIR": "pair_style", "BOND": "bond_style", "COMPUTE": "compute", "ATOM": "atom_style",
+         "COMMAND": "command"}
 VERDICTS = {"FINE": "fine", "WARNING": "warning", "ERROR": "error"}
 # the heading of the page above the list of each room
 HEADINGS = {"stokes": "### Beside pair_style stokes_dynamics and its fixes", "sph": "### Beside the SPH styles",

@@ -42,11 +42,41 @@ def moved_by_lammps(ours):
     return scene(move="fix move ours sph") if ours else scene() + ["fix b others sph"]
 
 
+def told(command, water, others):
+    """A command that keeps water from others, and one that does not."""
+    return lambda ours: scene() + [f"{command} {water if ours else others}"]
+
+
+def of_a_group(command):
+    """Of the water alone, and of water and walls."""
+    def lines(ours):
+        which = "ours" if ours else "sph"
+        made = scene()
+        made.insert(made.index("group sph type 1 2") + 1, f"atom_modify sort 0 0 first {which}")
+        return made + [f"{command} {which}"]
+    return lines
+
+
+def bound(ours):
+    """Bonds of neighbours"""
+    lines = [line.replace("atom_style sph", "atom_style hybrid sph bond")
+             .replace("box 3 box", "box 3 box bond/types 1 extra/bond/per/atom 9 extra/special/per/atom 60")
+             for line in scene()]
+    group, near = ("ours", 0.11) if ours else ("others", 0.21)
+    return lines + ["bond_style zero", "bond_coeff 1", f"create_bonds many {group} {group} 1 0.05 {near}"]
+
+
+def molecules(group):
+    lines = [line.replace("atom_style sph", "atom_style hybrid sph bond") for line in scene()]
+    return lines + [f"neigh_modify exclude molecule/intra {group}"]
+
+
 DYNAMIC = ["variable low atom y<0.35", "group low dynamic ours every 1 var low"]
 # (kind and styles of the row, its facts, the input, what is said)
 LAMMPS_SPH = ("PAIR sph/rhosum sph/taitwater* sph/idealgas sph/lj rheo*", "0")
 WALL = ("FIX wall/reflect* wall/lj* wall/harmonic* wall/morse wall/table wall/lepton wall/colloid "
         "wall/region wall/gran*", "0")
+LIST = ("COMMAND neigh_modify", "0")
 GROUP = ("FIX nve/sph nve/sph/stationary wall/adami/sph sph/grains", "0")
 BESIDE = [
     (*LAMMPS_SPH, paired("sph/rhosum 1", "IJ sph/rhosum 0.2"),
@@ -62,6 +92,16 @@ BESIDE = [
     (*WALL, fixed("fix b GROUP wall/morse xhi EDGE 1 1 0.02 0.05"), "fix b of style wall/morse is no wall for water"),
     (*WALL, fixed("fix b GROUP wall/region box harmonic 1 0.02 0.05"),
      "fix b of style wall/region is no wall for water"),
+    (*LIST, told("neigh_modify exclude type", "1 1", "2 2 exclude type 3 3 exclude type 2 3 exclude type 1 3"),
+     "neigh_modify has exclude type 1 1, so that atoms 1 and 2 would not see each other: take it out"),
+    (*LIST, told("neigh_modify exclude group", "ours walls", "walls walls"),
+     "neigh_modify has exclude group ours walls, so that atoms 1 and 49 would not see"),
+    (*LIST, lambda ours: molecules("all" if ours else "walls"), "neigh_modify has exclude molecule/intra all, so that"),
+    (*LIST, of_a_group("neigh_modify include"), "neigh_modify has include ours, so that atoms 1 and 49 would not see"),
+    ("COMMAND comm_modify", "0", of_a_group("comm_modify group"), "comm_modify has group ours, so that atoms 1 and 49"),
+    ("COMMAND special_bonds", "0", bound, "special_bonds has a factor 0 and keeps atom 1 from those"),
+    ("COMMAND pair_coeff", "0", told("pair_coeff", "1 2 none", "1 3 none"),
+     "pair_coeff leaves out types 1 and 2, so that atoms 1 and 49 would not see each other"),
 ]
 DYNAMICS = [
     (*GROUP, ["fix move low nve/sph"], "fix move of style nve/sph has the dynamic group low"),
@@ -128,6 +168,19 @@ def test_every_row_has_a_case(tmp_path):
     assert [row for row in rows("vans") if row[2] != "FINE"] == [
         # test_vans_coupling.py
         ("FIX wall/reflect*", "LANGEVIN", "WARNING"), ("FIX freeze setforce planeforce lineforce", "0", "WARNING")]
+
+
+def test_particles_at_rest_may_lose_their_own_kind(tmp_path):
+    """As walls of LIGGGHTS's inputs do, where their densities have rates alone."""
+    lines = [line.replace("fix floor walls wall/adami/sph", "fix floor walls nve/sph/stationary") for line in scene()]
+    lines.append("neigh_modify exclude group walls walls")
+    assert said(tmp_path, lines, 1) == ("", "")
+    lines = [line + " delta 0.1" * line.startswith("fix density") for line in lines]
+    assert "exclude group walls walls" in said(tmp_path, lines)[0]
+
+
+def test_factors_above_0_of_bonds_keep_neighbours(tmp_path):
+    assert said(tmp_path, bound(True) + ["special_bonds lj/coul 1 1 1"])[0] == ""
 
 
 def test_viscosity_that_damps_sound_lets_fix_sph_be(tmp_path):

@@ -147,15 +147,19 @@ AT_RUN = {
                                     "group two type 2\n"
                                     "fix move one nve/sph\nfix w two wall/adami/sph gravity 0 -1e7 0",
                                     "that the fluid asks for is not above 0, the lowest of fix eos"),
+    "integrated twice": (PAIR + MOVE + "fix more all nve/sph",
+                         "atom 1 is integrated twice, by fix more of style nve/sph and by another fix"),
+    "integrated by two styles": (PAIR + MOVE + "fix more all nve", "integrated twice, by fix more of style nve"),
+    "rerun": (PAIR + MOVE + "dump d all atom 1 {dump}\nrun 1\nrerun {dump} dump x y z", "cannot be used with rerun"),
     "stop": (PAIR.replace("* *", "* * c 20") + MOVE + "timestep 0.1\nfix c all check/timestep/sph 1 0.3 stop",
              "more than 0.3"),
 }
 
 
 @pytest.mark.parametrize("case", AT_RUN)
-def test_scenes(case):
+def test_scenes(case, tmp_path):
     lines, expected = AT_RUN[case]
-    assert expected in message(random_scene() + lines + "\nrun 1")
+    assert expected in message(random_scene() + lines.replace("{dump}", str(tmp_path / "dump")) + "\nrun 1")
 
 
 @pytest.mark.parametrize("wall, bad, good", [
