@@ -292,13 +292,14 @@ void FixSphTension::find_curvatures()
     weights.resize(entries + entries / 8);
   }
   for (auto *rows : {&kappa, &once, &twice}) rows->resize(nlocal + 1);
-  const sd_sph_skin pairs = {first.data(), skin.data(), weights.data()};
+  shows.resize(n + 1);
+  const sd_sph_skin pairs = {first.data(), shows.data(), skin.data(), weights.data()};
   const double *beside_wall = walls ? at_wall.data() : nullptr, *surface_rows = at_surface.data();
   sd_sph_film_curvatures(&film, whole.data(), surface_rows, beside_wall, v4.data(), &pairs, turns.data(), kappa.data());
   sd_sph_film_means(&film, surface_rows, &pairs, turns.data(), spread(kappa), once.data());
   sd_sph_film_means(&film, surface_rows, &pairs, turns.data(), spread(once), twice.data());
   sd_sph_film_sharpen(&film, kappa.data(), once.data(), twice.data(), beside_wall, once.data());
-  sd_sph_film_inwards(&film, surface_rows, &pairs, turns.data(), spread(once), kappa.data());
+  sd_sph_film_inwards(&film, surface_rows, &pairs, whole.data(), turns.data(), spread(once), kappa.data());
 }
 
 void FixSphTension::add_forces()

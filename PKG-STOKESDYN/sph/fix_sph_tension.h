@@ -64,7 +64,7 @@ class FixSphTension : public SphFix {
   Rows x4, v4, at_surface, contact, whole, at_wall, sums, beside, turns;
   std::vector<int> wall, parent, place, skin;
   std::vector<size_t> first;
-  std::vector<char> inside, marked, cells, deep;
+  std::vector<char> inside, marked, cells, deep, shows;
   std::vector<double> one, kappa, once, twice, weights, F, area, name, mass, held;
   std::vector<sd_sph_drop> drops;
   sd_cells cells_of_drops = {};

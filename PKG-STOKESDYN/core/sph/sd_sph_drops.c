@@ -17,27 +17,31 @@ static int drops_root_of(int *parent, int i)
   return i;
 }
 
-/* Makes one tree of the points of two cells, which each are one, if any two of them are in reach. */
-static void drops_join(const sd_sph_film *f, const sd_cells *c, int first, int other, int *parent)
+/* Makes one tree of the points of two cells, which each are one, if any two of them are in reach: 1 if they have been
+ * two. */
+static int drops_join(const sd_sph_film *f, const sd_cells *c, int first, int other, int *parent)
 {
   const double reach = 2.0 * f->surface->h;
   const int one = drops_root_of(parent, first), two = drops_root_of(parent, other);
-  if (one == two) return;
+  if (one == two) return 0;
   for (int i = first; i >= 0; i = c->next[i])
     for (int j = other; j >= 0; j = c->next[j]) {
       const double *x = f->x4 + 4 * (size_t) i, *y = f->x4 + 4 * (size_t) j;
       const double d[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
       if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach)) continue;
       parent[two] = one;
-      return;
+      return 1;
     }
+  return 0;
 }
 
-/* Joins cells that are `ring` apart along one direction and not more along others, each pair once. */
-static void drops_join_ring(const sd_sph_film *f, const sd_cells *c, int ring, int *parent)
+/* Joins cells that are `ring` apart along one direction and not more along others, each pair once; returns how many
+ * trees that has taken away. */
+static int drops_join_ring(const sd_sph_film *f, const sd_cells *c, int ring, int *parent)
 {
   const int up = f->surface->dimension == 3 ? ring : 0;
   uint64_t number;
+  int joined = 0;
   for (int i = 0; i < f->all; i++) {
     if (!is_fluid(f, i) || c->next[i] >= 0) continue;    // of each cell the last one of its chain
     int64_t at[3];
@@ -48,24 +52,30 @@ static void drops_join_ring(const sd_sph_film *f, const sd_cells *c, int ring, i
         for (int x = z > 0 || y > 0 ? -ring : 1; x <= ring; x++) {
           if (abs(x) < ring && abs(y) < ring && z < ring) continue;
           const int other = sd_cells_slot(c, at[0] + x, at[1] + y, at[2] + z, &number)->first;
-          if (other >= 0) drops_join(f, c, first, other, parent);
+          if (other >= 0) joined += drops_join(f, c, first, other, parent);
         }
   }
+  return joined;
 }
 
 /* All points of a cell are in reach of each other, and no point is of one that is more than two cells away. After
- * the next cells nearly all of a drop is one tree, so that few pairs are asked for their distance. */
+ * the next cells nearly all of a drop is one tree, so that few pairs are asked for their distance; a scene that is one
+ * drop is known then. */
 void sd_sph_find_drops(const sd_sph_film *f, sd_cells *cells, int *parent)
 {
   const double lo[3] = {0.0, 0.0, 0.0}, side = 2.0 * f->surface->h / sqrt(f->surface->dimension) * (1.0 - 1e-9);
+  int trees = 0;
   sd_cells_clear(cells, lo, side);
   for (int i = 0; i < f->all; i++) {
     parent[i] = i;
     if (!is_fluid(f, i)) continue;
     sd_cells_add(cells, f->x4 + i, i);    // rows of four: x4[i + 3 i]
-    if (cells->next[i] >= 0) parent[i] = parent[cells->next[i]];
+    if (cells->next[i] >= 0)
+      parent[i] = parent[cells->next[i]];
+    else
+      trees++;
   }
-  for (int ring = 1; ring <= 2; ring++) drops_join_ring(f, cells, ring, parent);
+  for (int ring = 1; ring <= 2 && trees > 1; ring++) trees -= drops_join_ring(f, cells, ring, parent);
 }
 
 int sd_sph_name_drops(int all, int *parent, double *name)

@@ -49,14 +49,24 @@ void sd_sph_surface_make(sd_sph_kernel kernel, int dimension, double h, sd_sph_s
   }
 }
 
-double sd_sph_depth(const sd_sph_surface *s, double S)
+/* near: an interval to begin with, and the one that is found */
+static double depth_near(const sd_sph_surface *s, double S, int *near)
 {
   enum { INTERVALS = SD_SPH_DEPTHS - 1 };
   if (!(S > s->S0[0])) return 0.0;
   if (S >= s->S0[INTERVALS]) return 2.0 * s->h;
-  const int k = sd_interval(s->S0, INTERVALS, S);
+  int k = *near;
+  while (S < s->S0[k]) k--;
+  while (S >= s->S0[k + 1]) k++;
+  *near = k;
   const double part = (S - s->S0[k]) / (s->S0[k + 1] - s->S0[k]);
   return (k + part) * 2.0 * s->h / INTERVALS;
+}
+
+double sd_sph_depth(const sd_sph_surface *s, double S)
+{
+  int near = sd_interval(s->S0, SD_SPH_DEPTHS - 1, S);
+  return depth_near(s, S, &near);
 }
 
 static double beta_at(const sd_sph_surface *s, double z)
@@ -92,9 +102,10 @@ double sd_sph_surface_curvature(const sd_sph_surface *s, const double *A, double
   const sd_sph_symmetric E = s->dimension == 3
       ? (sd_sph_symmetric){{A[0], A[4], A[8], 0.5 * (A[1] + A[3]), 0.5 * (A[2] + A[6]), 0.5 * (A[5] + A[7])}}
       : (sd_sph_symmetric){{A[0] + A[4]}};
-  double z = sd_sph_depth(s, S), kappa = at_surface(&E, z);
+  int near = sd_interval(s->S0, SD_SPH_DEPTHS - 1, S);
+  double z = depth_near(s, S, &near), kappa = at_surface(&E, z);
   for (int round = 0; curved && round < 2; round++) {
-    z = sd_sph_depth(s, S + kappa * s->h * beta_at(s, z));
+    z = depth_near(s, S + kappa * s->h * beta_at(s, z), &near);
     kappa = at_surface(&E, z);
   }
   const double most = 2.0 * (s->dimension - 1) / s->h;
@@ -270,6 +281,7 @@ void sd_sph_film_curvatures(const sd_sph_film *f, const double *whole, const dou
                             double *kappa)
 {
   double gradient[9];
+  for (int i = 0; i <= f->all; i++) skin->shows[i] = surface[4 * (size_t) i + 3] != 0.0;
   loops_of_films()->turns(f, surface, at_wall, v4, skin, rows);
   for (int i = 0; i < f->list->n; i++) {
     kappa[i] = 0.0;
@@ -302,11 +314,11 @@ void sd_sph_film_sharpen(const sd_sph_film *f, const double *kappa, const double
   }
 }
 
-void sd_sph_film_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin,
+void sd_sph_film_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin, double *whole,
                          double *rows, const double *ks, double *k)
 {
   sd_sph_film_means(f, surface, skin, rows, ks, k);
-  loops_of_films()->inwards(f, surface, skin, ks, rows, k);
+  loops_of_films()->inwards(f, surface, skin, ks, whole, rows, k);
   for (int i = 0; i < f->list->n; i++) {
     const double w = surface[4 * (size_t) i + 3];
     if (w > 0.0) k[i] = w * ks[i] + (1.0 - w) * k[i];

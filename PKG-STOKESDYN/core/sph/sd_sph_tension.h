@@ -80,7 +80,8 @@ typedef struct {
 } sd_sph_film;
 #define SD_SPH_WHOLE 0.95
 
-/* sums [8 n]: S Gf | Sw Gw, own V W(0) contained; 0 of those that are deep. */
+/* sums [8 n]: S Gf | Sw Gw, own V W(0) contained; that alone of those that are deep and, without walls, of
+ * those inside, most of which no surface reaches. */
 enum { SD_SPH_FILM_SUMS = 8 };
 void sd_sph_film_sums(const sd_sph_film *f, double *sums);
 
@@ -97,10 +98,12 @@ void sd_sph_film_wet_walls(const sd_sph_film *f, const double *contact, const do
 void sd_sph_film_normals(const sd_sph_film *f, const double *sums, const double *beside, double *whole,
                          double *surface, double *at_wall);
 
-/* Pairs of particles of the surface: those of i are first[i] .. first[i+1] - 1, with w_b V_b W. Room for
- * first [n+1], and for sd_sph_skin_size neighbours and weights. */
+/* Pairs of particles of the surface: those of i are first[i] .. first[i+1] - 1, with w_b V_b W; and who shows
+ * others a normal, as particle of the surface or of a wall. Room for first [n+1] and shows [all+1], and for
+ * sd_sph_skin_size neighbours and weights. */
 typedef struct {
   size_t *first;
+  char *shows;
   int *neighbor;
   double *weight;
 } sd_sph_skin;
@@ -121,9 +124,10 @@ void sd_sph_film_means(const sd_sph_film *f, const double *surface, const sd_sph
 void sd_sph_film_sharpen(const sd_sph_film *f, const double *kappa, const double *once, const double *twice,
                          const double *at_wall, double *ks);
 
-/* k [n] of ks [all+1]: inwards, as far as the surface reaches; rows then say of all fluid whether it does. */
-void sd_sph_film_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin, double *rows,
-                         const double *ks, double *k);
+/* k [n] of ks [all+1]: inwards, as far as the surface reaches; rows then say of all fluid whether it does,
+ * and whole has its G. */
+void sd_sph_film_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin,
+                         double *whole, double *rows, const double *ks, double *k);
 
 /* F [3 n] of k, and area [n]: the share of each particle in that of the surface of the fluid, 2 V |G| where
  * the surface reaches, without that on walls. friction: mu_s. */

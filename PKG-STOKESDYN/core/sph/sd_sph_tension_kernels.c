@@ -31,6 +31,13 @@ INLINE meeting meets(const sd_sph_film *f, scales c, row4 xi, const int *j, int 
 }
 
 #define IS_DEEP(f, i) ((f)->deep && (f)->deep[i])
+/* Of those whose support is whole the sums are asked for only where the surface is in reach: inwards. Where there are
+ * walls, sums say first who is beside one. */
+INLINE int sums_wait(const sd_sph_film *f, int i)
+{
+  return f->inside && f->inside[i] && !f->wall;
+}
+
 #define EACH_PAIR(f, i) (int at = 0; at < (f)->list->count[i]; at += LANES)
 #define NEXT(f, i) ((f)->list->neighbor[i] + at)
 #define IS_WALL(k, wall) (long long) -(wall)[j[k]]
@@ -43,7 +50,7 @@ INLINE void film_sums(const sd_sph_film *f, double *sums, sd_sph_kernel kernel, 
     vec sum[8];
     for (int k = 0; k < 8; k++) sum[k] = all(0.0);
     for EACH_PAIR(f, i) {
-      if (IS_DEEP(f, i)) break;
+      if (IS_DEEP(f, i) || (!walls && sums_wait(f, i))) break;
       const int *j = NEXT(f, i);
       const meeting m = meets(f, c, xi, j, 1, kernel);
       vec W = m.W, g = m.g;
@@ -88,14 +95,15 @@ INLINE void film_wet_walls(const sd_sph_film *f, const double *contact, const do
 #define WEIGHT_OF(k, surface) (surface)[4 * (size_t) j[k] + 3]
 #define VALUE_OF(k, values) (values)[j[k]]
 
-/* Of the neighbours of i those that are at the surface or of a wall, filled up with the far-away particle. */
-INLINE int skin_of(const sd_sph_film *f, const double *surface, int i, int *skin)
+/* Of the neighbours of i those that show a normal, filled up with the far-away particle. */
+INLINE int skin_of(const sd_sph_film *f, const char *shows, int i, int *skin)
 {
-  const vec zero = all(0.0);
   int count = 0;
   for EACH_PAIR(f, i) {
     const int *j = NEXT(f, i);
-    count += keep(skin + count, j, bits((vec) LANEWISE(WEIGHT_OF, surface) != zero));
+    unsigned hits = 0;
+    for (int k = 0; k < LANES; k++) hits |= (unsigned) shows[j[k]] << k;
+    if (hits) count += keep(skin + count, j, hits);
   }
   while (count % LANES) skin[count++] = f->all;
   return count;
@@ -131,7 +139,7 @@ INLINE void film_turns(const sd_sph_film *f, const double *surface, const double
     if (!(ni[3] > 0.0)) continue;
     const row4 shown = at_wall ? load4(at_wall + 8 * (size_t) i) : (row4){0};
     const row4 line = at_wall ? load4(at_wall + 8 * (size_t) i + 4) : (row4){0};
-    const size_t end = last + (size_t) skin_of(f, surface, i, skin->neighbor + last);
+    const size_t end = last + (size_t) skin_of(f, skin->shows, i, skin->neighbor + last);
     vec sum[SD_SPH_SKIN_SUMS];
     for (int k = 0; k < SD_SPH_SKIN_SUMS; k++) sum[k] = zero;
     for (; last < end; last += LANES) {
@@ -178,8 +186,20 @@ static void film_means(const sd_sph_film *f, const sd_sph_skin *skin, const doub
   for (int i = 0; i < f->list->n; i++) sums[i] = weighed(skin, skin->first[i], skin->first[i + 1], k);
 }
 
+/* G of a particle whose sums have waited */
+INLINE void late_gradient(const sd_sph_film *f, scales c, row4 xi, int i, double *G, sd_sph_kernel kernel)
+{
+  vec sum[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
+  for EACH_PAIR(f, i) {
+    const meeting m = meets(f, c, xi, NEXT(f, i), 1, kernel);
+    for (int d = 0; d < 3; d++) sum[d] += m.g * m.d[d];
+  }
+  const row4 whole = over_lanes(sum);
+  for (int d = 0; d < 3; d++) G[d] = whole[d];
+}
+
 INLINE void film_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin, const double *k,
-                         double *rows, double *mean, sd_sph_kernel kernel)
+                         double *whole, double *rows, double *mean, sd_sph_kernel kernel)
 {
   const scales c = scales_of(f);
   const vec zero = all(0.0);
@@ -187,16 +207,17 @@ INLINE void film_inwards(const sd_sph_film *f, const double *surface, const sd_s
   for (int i = 0; i < f->list->n; i++) {
     if (surface[4 * (size_t) i + 3] != 0.0) continue;
     const row4 xi = load4(f->x4 + 4 * (size_t) i);
-    const int count = IS_DEEP(f, i) ? 0 : skin_of(f, surface, i, seen);
-    vec sum = zero, whole = zero;
+    const int count = IS_DEEP(f, i) ? 0 : skin_of(f, skin->shows, i, seen);
+    if (count && sums_wait(f, i)) late_gradient(f, c, xi, i, whole + 4 * (size_t) i + 1, kernel);
+    vec sum = zero, weight = zero;
     for (int at = 0; at < count; at += LANES) {
       const int *j = seen + at;
       const vec w = larger((vec) LANEWISE(WEIGHT_OF, surface), zero);
       const vec W = meets(f, c, xi, j, 0, kernel).W * w;
-      whole += W;
+      weight += W;
       sum += W * (vec) LANEWISE(VALUE_OF, k);
     }
-    const double around = sum_of(whole);
+    const double around = sum_of(weight);
     rows[SD_SPH_SKIN_SUMS * (size_t) i + 15] = around;
     mean[i] = around > 1e-9 ? sum_of(sum) / around : 0.0;
   }
@@ -236,9 +257,9 @@ static void all_turns(const sd_sph_film *f, const double *surface, const double 
 }
 
 static void all_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin, const double *k,
-                        double *rows, double *mean)
+                        double *whole, double *rows, double *mean)
 {
-  BY_KERNEL(f, film_inwards, surface, skin, k, rows, mean);
+  BY_KERNEL(f, film_inwards, surface, skin, k, whole, rows, mean);
 }
 
 const sd_sph_film_loops SD_KERNELS(sd_sph_film_loops) = {all_sums, all_wet_walls, all_turns, film_means, all_inwards};

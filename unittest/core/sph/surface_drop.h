@@ -18,6 +18,7 @@ typedef struct {
   double surface[4 * (MOST + 1)], at_wall[8 * MOST], kappa[MOST + 1], F[3 * MOST], area[MOST];
   double rows[SD_SPH_SKIN_SUMS * MOST], k[MOST];
   size_t first[MOST + 1];
+  char shows[MOST + 1];
   sd_sph_skin skin;
   sd_sph_surface plane;
   sd_sph_both list;

@@ -20,7 +20,7 @@ static void look(drop *s, double angle)
   sd_sph_film_normals(&s->film, s->sums, walls ? s->beside : NULL, s->whole, s->surface,
                       walls ? s->at_wall : NULL);
   const size_t room = sd_sph_skin_size(&s->film, s->surface);
-  s->skin = (sd_sph_skin){s->first, malloc(sizeof(int) * room), malloc(sizeof(double) * room)};
+  s->skin = (sd_sph_skin){s->first, s->shows, malloc(sizeof(int) * room), malloc(sizeof(double) * room)};
   sd_sph_film_curvatures(&s->film, s->whole, s->surface, walls ? s->at_wall : NULL, s->v4, &s->skin, s->rows,
                          s->kappa);
 }
@@ -114,7 +114,7 @@ static void means_keep_a_uniform_curvature(void **state)
   sd_sph_film_sharpen(&s->film, s->kappa, mean, mean, NULL, ks);
   for (int i = 0; i < s->n; i++)
     if (s->surface[4 * i + 3] > 0.0) CHECK_NEAR(ks[i], 0.7 * (1.0 + 0.16 * 0.2 * 0.7), 1e-14);
-  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->rows, s->kappa, s->k);
+  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->whole, s->rows, s->kappa, s->k);
   for (int i = 0; i < s->n; i++)
     if (s->k[i] != 0.0) {
       CHECK_NEAR(s->k[i], 0.7, 1e-14);
@@ -134,7 +134,7 @@ static void the_deep_is_out_of_reach_and_bears_nothing(void **state)
   find_neighbours(s, 0);
   look(s, 0.0);
   const sd_sph_tension how = {2.5, 0.1};
-  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->rows, s->kappa, s->k);
+  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->whole, s->rows, s->kappa, s->k);
   sd_sph_tension_forces(&s->film, &how, s->whole, s->surface, s->rows, s->k, F, area);
   for (int i = 0; i < s->n; i++) marked[i] = !(inside[i] = !(s->surface[4 * i + 3] > 0.0));
   sd_sph_find_deep(s->n, s->n, s->x4, marked, 0.24, grid, deep);
@@ -149,7 +149,7 @@ static void the_deep_is_out_of_reach_and_bears_nothing(void **state)
   free(s->skin.neighbor);
   free(s->skin.weight);
   look(s, 0.0);
-  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->rows, s->kappa, s->k);
+  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->whole, s->rows, s->kappa, s->k);
   sd_sph_tension_forces(&s->film, &how, s->whole, s->surface, s->rows, s->k, s->F, s->area);
   for (int i = 0; i < s->n; i++) CHECK_NEAR(s->area[i], area[i], 1e-14);
   for (int i = 0; i < 3 * s->n; i++) CHECK_NEAR(s->F[i], F[i], 1e-14);
@@ -170,7 +170,7 @@ static void a_lone_particle_has_its_own_curvature(void **state)
   free(s->skin.neighbor);
   free(s->skin.weight);
   const size_t room = sd_sph_skin_size(&s->film, s->surface);
-  s->skin = (sd_sph_skin){s->first, malloc(sizeof(int) * room), malloc(sizeof(double) * room)};
+  s->skin = (sd_sph_skin){s->first, s->shows, malloc(sizeof(int) * room), malloc(sizeof(double) * room)};
   sd_sph_film_curvatures(&s->film, s->whole, s->surface, NULL, s->v4, &s->skin, s->rows, s->kappa);
   s->kappa[0] = 0.7;
   sd_sph_film_means(&s->film, s->surface, &s->skin, s->rows, s->kappa, mean);
@@ -211,7 +211,7 @@ static void a_uniform_curvature_pushes_as_a_pressure(void **state)
   disk(s, 1.0, 0.1, 0.0, 0.0);
   find_neighbours(s, 0);
   look(s, 0.0);
-  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->rows, s->kappa, s->k);
+  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->whole, s->rows, s->kappa, s->k);
   for (int i = 0; i < s->n; i++) s->k[i] = 0.7;
   const sd_sph_tension how = {2.5, 0.0};
   sd_sph_tension_forces(&s->film, &how, s->whole, s->surface, s->rows, s->k, s->F, s->area);
@@ -240,7 +240,7 @@ static void friction_of_the_surface_keeps_momentum_and_its_moment_and_takes_ener
     for (int d = 0; d < 2; d++) s->v4[4 * i + d] = uniform(&seed, -1.0, 1.0);
   find_neighbours(s, 0);
   look(s, 0.0);
-  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->rows, s->kappa, s->k);
+  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->whole, s->rows, s->kappa, s->k);
   memset(s->k, 0, sizeof(s->k));
   double sum[3] = {0.0}, size = 0.0, power = 0.0;
   const sd_sph_tension how = {2.5, 0.3};
@@ -341,7 +341,7 @@ static void a_uniform_pressure_holds_a_drop_on_its_wall(void **state)
   find_neighbours(s, 1);
   look(s, 2.0);
   static double P[MOST], wet[3 * MOST];
-  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->rows, s->kappa, s->k);
+  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->whole, s->rows, s->kappa, s->k);
   for (int i = 0; i < s->n; i++) {
     s->k[i] = k;
     P[i] = i % 2 ? sigma * k : 3.0 * sigma * k;
