@@ -80,7 +80,7 @@ static void rousseau(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const
     V += number * of_one;
     S += number * 4.0 * SD_PI * a * a;
   }
-  const double pore = (1.0 - fluid->phi_max) / fluid->phi_max * V / S;
+  const double pore = S > 0.0 ? (1.0 - fluid->phi_max) / fluid->phi_max * V / S : 0.0;    // 0: there are no grains
   double zv = 0.0;
   length[0] = 0.0;
   for (int j = 1; j < mesh->ncell; j++) {

@@ -63,6 +63,19 @@ def test_poiseuille():
     s.close()
 
 
+@pytest.mark.parametrize("law, over", [("rousseau", 1.003), ("kz sublayer yes", 0.918), ("kz", 0.589)])
+def test_friction_of_a_smooth_bottom_beside_keulegan(law, over):
+    """Mean speed over u_star, beside 2.5 ln(H u_star/nu) + 3.25 (Keulegan 1938); rows of doc/vans_stream.md. Without
+    grains rousseau had pores of no size, and met no number."""
+    s = Scene()
+    s.do(f"fix h all hydro/vans 1 mesh 627 $(0.02/626) 0 fluid 1000 0.001 couple fluid gravity {0.005 * 9.81} 0 -9.8 "
+         f"turbulence {law} solve 2 0.2", "run 100")
+    star = np.sqrt(0.005 * 9.81 * 0.02)
+    keulegan = 2.5 * np.log(0.02 * star / 1e-6) + 3.25
+    assert abs(s.number("discharge") / 0.02 / star / keulegan / over - 1) < 0.01
+    s.close()
+
+
 def test_uneven_mesh(tmp_path):
     """Edges from a file: Poiseuille between slices that grow; the heights are the file's, and the first edge is the
     bottom."""

@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""The friction of a smooth bottom without grains, by each mixing length of fix hydro/vans: the mean speed over that of
+Keulegan's law (1938), U_m = u_star (2.5 ln(H u_star/nu) + 3.25). The table of doc/vans_stream.md, in a minute.
+
+    . build/env.sh
+    unittest/bench/stream_friction.py"""
+import math
+import subprocess
+import tempfile
+
+NU = 1e-6
+STREAMS = ((0.02, 0.005), (0.1, 0.001), (0.1, 0.05))    # depth, slope
+LAWS = [law + more for law in ("rousseau", "parabolic", "kz", "li_sawamoto", "ni_capart")
+        for more in ("", " sublayer yes")]
+INPUT = """plugin load stokesdynplugin.so
+units si
+atom_style sphere
+region box block 0 1 0 1 0 1
+create_box 1 box
+pair_style zero 0.1
+pair_coeff * *
+fix vans all hydro/vans 1 mesh {cells} {height:.17g} 0 fluid 1000 0.001 couple fluid gravity {g:.17g} 0 -9.8 &
+    turbulence {law} solve 2 0.2
+run 1500
+print "DISCHARGE $(f_vans[18])"
+"""
+
+
+def speed(law, H, slope):
+    """Mean, over u_star; a slice for each nu/u_star, at most 6000"""
+    star = math.sqrt(9.81 * slope * H)
+    slices = min(int(H * star / NU), 6000)
+    with tempfile.NamedTemporaryFile("w", suffix=".in") as f:
+        f.write(INPUT.format(cells=slices + 1, height=H / slices, g=9.81 * slope, law=law))
+        f.flush()
+        out = subprocess.run(["lmp", "-in", f.name, "-log", "none", "-nocite"], capture_output=True, text=True).stdout
+    discharge = [line for line in out.splitlines() if line.startswith("DISCHARGE")]
+    return float(discharge[0].split()[1]) / H / star
+
+
+def main():
+    numbers = [H * math.sqrt(9.81 * slope * H) / NU for H, slope in STREAMS]
+    print("H u_star/nu".ljust(28) + "".join(f"{number:9.0f}" for number in numbers))
+    for law in LAWS:
+        over = [speed(law, *stream) / (2.5 * math.log(number) + 3.25) for stream, number in zip(STREAMS, numbers)]
+        print(law.ljust(28) + "".join(f"{ratio:9.3f}" for ratio in over), flush=True)
+
+
+if __name__ == "__main__":
+    main()
