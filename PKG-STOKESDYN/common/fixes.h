@@ -7,6 +7,7 @@
 #include "modify.h"
 #include "utils.h"
 
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,15 @@ inline std::string name_of(const LAMMPS_NS::Fix *fix)
   return "fix " + std::string(fix->id) + " of style " + fix->style;
 }
 
+/* A style of LAMMPS without the ending of a package that runs it faster: gravity of gravity/omp */
+inline std::string plain_style(const std::string &style)
+{
+  for (const char *ending : {"/kk/device", "/kk/host", "/kk", "/gpu", "/intel", "/omp", "/opt"})
+    if (style.size() > strlen(ending) && style.substr(style.size() - strlen(ending)) == ending)
+      return style.substr(0, style.size() - strlen(ending));
+  return style;
+}
+
 /* The first whose style this pattern matches (utils::strmatch), nullptr: there is none */
 inline LAMMPS_NS::Fix *fix_like(LAMMPS_NS::LAMMPS *lmp, const std::string &pattern)
 {
@@ -26,12 +36,12 @@ inline LAMMPS_NS::Fix *fix_like(LAMMPS_NS::LAMMPS *lmp, const std::string &patte
   return nullptr;
 }
 
-/* All of this style, in the order of the input. */
+/* All of this plain style, in the order of the input. */
 inline std::vector<LAMMPS_NS::Fix *> fixes_of(LAMMPS_NS::LAMMPS *lmp, const std::string &style)
 {
   std::vector<LAMMPS_NS::Fix *> found;
   for (int i = 0; i < lmp->modify->nfix; i++)
-    if (style == lmp->modify->fix[i]->style) found.push_back(lmp->modify->fix[i]);
+    if (style == plain_style(lmp->modify->fix[i]->style)) found.push_back(lmp->modify->fix[i]);
   return found;
 }
 

@@ -65,8 +65,8 @@ static std::vector<Guest> guests_of(LAMMPS *lmp, const Neighbour &row)
 {
   std::vector<Guest> found;
   const auto add = [&](const std::string &style, const std::string &name, const auto &put) {
-    if (!fits(row.styles, style)) return;
-    found.push_back({lmp, style, name});
+    if (!fits(row.styles, plain_style(style))) return;
+    found.push_back({lmp, plain_style(style), name});
     put(found.back());
   };
   const Modify *modify = lmp->modify;

@@ -24,6 +24,7 @@ namespace StokesDyn {
  * atom style and a command. */
 struct Guest {
   LAMMPS_NS::LAMMPS *lmp;
+  /* without the ending of an accelerator package (plain_style) */
   std::string style;
   /* as messages name it: "fix ID of style STYLE", "pair_style STYLE" */
   std::string name;

@@ -235,7 +235,8 @@ void PairStokesDynamics::look_at_neighbours()
     if (fix->applies()) bits |= fix->groupbit;
   const std::vector<char> chosen = hydro.ambient.chosen_now();
   neighbourhood.look(voice, stokes_neighbours,
-                     fact(FORCE, bits != 0) | fact(TURNING, hydro.rotation()) |
+                     fact(FORCE, bits != 0) | fact(APPLIED, bits != 0 && !hydro.settings.add_force) |
+                         fact(TURNING, hydro.rotation()) |
                          fact(RESTING, hydro.ambient.settings.rests()),
                      [&](int i) { return chosen[i] && (atom->mask[i] & bits) ? FREE : 0u; });
 }

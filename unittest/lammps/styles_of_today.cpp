@@ -122,11 +122,12 @@ extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *l
     add(kind, name);
   };
   add_plain("pair", "dpd", &make<Pair, PairToday<DPD>>);
+  add_plain("pair", "dpd/omp", &make<Pair, PairToday<DPD>>);
   add_plain("pair", "bpm/spring", &make<Pair, PairToday<SPRING>>);
   add_plain("pair", "mdpd/rhosum", &make<Pair, PairToday<SILENT>>);
   add_plain("bond", "bpm/spring", &make<Bond, BondToday<BOND>>);
   add_plain("bond", "bpm/rotational", &make<Bond, BondToday<ROTATIONAL>>);
   add_plain("bond", "bpm/spring/plastic", &make<Bond, BondToday<SILENT>>);
   plugin.creator.of_command = &make_fix;
-  for (const char *name : {"damping/cundall", "viscous/sphere"}) add("fix", name);
+  for (const char *name : {"damping/cundall", "viscous/omp", "viscous/sphere"}) add("fix", name);
 }

@@ -27,7 +27,9 @@ namespace StokesDyn {
 
 // --- what the name of a style does not tell ------------------------------------------------------
 
-/* false: it is none of package GRANULAR, or does not tell */
+static const char CONTACTS[] = "gran/hooke gran/hooke/history gran/hertz/history";
+
+/* false: it does not tell */
 static bool read_contact(Pair *pair, Contact &contact)
 {
   double settings[5];
@@ -46,10 +48,8 @@ static bool read_contact(Pair *pair, Contact &contact)
 Contact contact_of(LAMMPS *lmp)
 {
   Contact contact;
-  for (const char *style : {"gran/hooke", "gran/hooke/history", "gran/hertz/history"}) {
-    Pair *pair = lmp->force->pair ? lmp->force->pair_match(style, 1, 1) : nullptr;
-    if (pair && read_contact(pair, contact)) contact.style = style;
-  }
+  for (const auto &each : Compat::pair_styles(lmp->force))
+    if (fits(CONTACTS, plain_style(each.first)) && read_contact(each.second, contact)) contact.style = each.first;
   return contact;
 }
 
@@ -127,6 +127,12 @@ static bool has_bath(const Guest &guest, std::string &)
 static bool remaps_v(const Guest &guest, std::string &)
 {
   return DeformSettings::remap(guest.fix) == Domain::V_REMAP;
+}
+
+/* of the fix that adds the drag */
+static bool stands_before_drag(const Guest &guest, std::string &)
+{
+  return !stands_behind(guest, "stokes_dynamics");
 }
 
 static bool has_one_atom(const Guest &guest, std::string &)
@@ -233,11 +239,11 @@ using N = Neighbour;
 
 const std::vector<Neighbour> stokes_neighbours = {
     // another drag, other noise
-    {N::FIX, "viscous viscous/kk langevin*", FORCE, N::ERROR,
+    {N::FIX, "viscous langevin*", FORCE, N::ERROR,
      "adds a drag to spheres that the fluid drags as well, so that drag counts twice: take out "
      "this fix or the pair style; for noise that goes with the fluid use fix "
      "stokes_dynamics/overdamped with temperature"},
-    {N::FIX, "viscous viscous/kk langevin*", OVERDAMPED, N::ERROR,
+    {N::FIX, "viscous langevin*", OVERDAMPED, N::ERROR,
      "adds a drag to spheres that the fluid drags as well: take it out; noise is the keyword "
      "temperature of fix stokes_dynamics/overdamped"},
     {N::FIX, "viscous/sphere", TURNING, N::ERROR,
@@ -257,6 +263,9 @@ const std::vector<Neighbour> stokes_neighbours = {
      "has a drag or noise of its own, which would count twice: take it out; films are the keyword "
      "lubrication of the pair style, noise is the keyword temperature of fix "
      "stokes_dynamics/overdamped"},
+    {N::FIX, "hydro/vans sph/grains", 0, N::ERROR,
+     "drags spheres by a fluid of its own, and the fluid of pair_style stokes_dynamics drags them as "
+     "well: take out one of the two, or give them different spheres"},
     {N::FIX, "dt/reset", OVERDAMPED | NOISE, N::ERROR,
      "makes steps of unequal length, whose averages are not those of time: take it out", nullptr,
      N::ANYWHERE},
@@ -267,12 +276,21 @@ const std::vector<Neighbour> stokes_neighbours = {
      "of that fix, or take it out", nullptr, FREE},
     {N::FIX, "*", OVERDAMPED, N::ERROR,
      "integrates spheres that fix stokes_dynamics/overdamped moves: take it out", integrates},
+    {N::FIX, "shake rattle", OVERDAMPED, N::ERROR,
+     "finds the forces of its bonds from masses and velocities, which motion without inertia has not "
+     "got: use stiff bonds (bond_style harmonic), or rigid_clumps yes for spheres that stay together"},
+    {N::FIX, "nve nve/limit nvt npt nph", FORCE | TURNING, N::WARNING,
+     "moves spheres but does not turn them, so that the torques of the fluid do nothing: use fix "
+     "nve/sphere or its like"},
     {N::FIX, "*/asphere*", FORCE | TURNING, N::WARNING,
      "turns spheres by angular momenta, of which the fluid knows nothing, so that it does not damp "
      "their spin: use fix nve/sphere or its like"},
     {N::FIX, "setforce freeze", OVERDAMPED, N::WARNING,
      "sets forces, and without inertia a force of 0 does not hold a sphere: use keyword held GROUP, or pin "
      "GROUP for spheres that turn in their place", nullptr, FREE},
+    {N::FIX, "setforce freeze planeforce lineforce aveforce", APPLIED, N::WARNING,
+     "stands before fix stokes_dynamics in the input, whose drag then moves what it holds: define it "
+     "behind", stands_before_drag},
     {N::FIX, "addtorque", TURNING, N::WARNING,
      "pushes the atoms of its group, which turns the group and not the spheres, and does nothing "
      "to a single sphere: a torque on spheres is the keyword torque of fix "

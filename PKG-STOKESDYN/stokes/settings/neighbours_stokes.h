@@ -18,6 +18,7 @@ enum StokesFact : unsigned {
   TURNING = 1 << 4,       // spheres turn
   RESTING = 1 << 5,       // the fluid rests
   UPRIGHT = 1 << 6,       // spheres do not turn
+  APPLIED = 1 << 7,       // with fix stokes_dynamics
 };
 
 inline unsigned fact(StokesFact which, bool holds) { return holds ? (unsigned) which : 0u; }

@@ -66,7 +66,12 @@ def bonded(style, gamma):
 
 HOOKE = "gran/hooke/history 10 NULL {} NULL {} 0"
 GRAN = "PAIR gran/hooke gran/hooke/history gran/hertz/history"
-LANGEVIN = "FIX viscous viscous/kk langevin*"
+LANGEVIN = "FIX viscous langevin*"
+TURNLESS = "FIX nve nve/limit nvt npt nph"
+HOLDING = "FIX setforce freeze planeforce lineforce aveforce"
+VANS = "hydro/vans 1 mesh 10 1 -9 fluid 1 1 gravity 0.1 0 -1 phi_max 0.6 area 100"
+BONDS = "\n".join(["bond_style harmonic", "bond_coeff 1 1 2.5"] + [f"create_bonds single/bond 1 {both}"
+                                                                  for both in ("1 2", "3 4")])
 # (kind and styles of the row, its facts, the input, what is said of which guest)
 CASES = [
     (LANGEVIN, "FORCE", fixed("fix b GROUP viscous 1", INERTIA),
@@ -78,6 +83,8 @@ CASES = [
      "fix b of style viscous adds a drag to spheres that the fluid drags as well: take"),
     (LANGEVIN, "OVERDAMPED", fixed("fix b GROUP langevin 1 1 1 77"),
      "noise is the keyword temperature of fix stokes_dynamics/overdamped"),
+    (LANGEVIN, "OVERDAMPED", fixed("fix b GROUP viscous/omp 1", before=TODAY),
+     "fix b of style viscous/omp adds a drag to spheres that the fluid drags as well: take"),
     ("FIX viscous/sphere", "TURNING", fixed("fix b GROUP viscous/sphere 1", INERTIA, words=TURN, before=TODAY),
      "fix b of style viscous/sphere damps spins"),
     ("FIX rigid*", "FORCE", fixed("fix b GROUP rigid single langevin 1 1 1 77", "fix drag ours stokes_dynamics"),
@@ -94,6 +101,17 @@ CASES = [
      "pair_style lubricate has a drag or noise"),
     ("PAIR lubricate* brownian*", "OVERDAMPED", paired("brownian 1 1 1 2.01 2.5 1 77", "IJ NAME", NOISY),
      "pair_style brownian has a drag or noise"),
+    ("FIX hydro/vans sph/grains", "0", fixed(f"fix b GROUP {VANS}", INERTIA),
+     "fix b of style hydro/vans drags spheres by a fluid of its own"),
+    ("FIX hydro/vans sph/grains", "0", fixed(f"fix b GROUP {VANS}"), "fix b of style hydro/vans drags spheres"),
+    ("FIX shake rattle", "OVERDAMPED", fixed("fix b GROUP shake 1e-4 20 0 b 1", before=BONDS),
+     "fix b of style shake finds the forces of its bonds from masses"),
+    (TURNLESS, "FORCE | TURNING", fixed("fix b GROUP nve", "fix drag ours stokes_dynamics", words=TURN),
+     "fix b of style nve moves spheres but does not turn them"),
+    (HOLDING, "APPLIED", fixed("fix b GROUP setforce 0 0 0", INERTIA),
+     "fix b of style setforce stands before fix stokes_dynamics in the input"),
+    (HOLDING, "APPLIED", fixed("fix b GROUP aveforce NULL NULL NULL", INERTIA),
+     "fix b of style aveforce stands before fix stokes_dynamics in the input"),
     ("FIX move", "OVERDAMPED", fixed("fix b GROUP move linear 0 0 1"), "fix b of style move integrates spheres"),
     ("FIX *", "OVERDAMPED", fixed("fix b GROUP nve/sphere"), "fix b of style nve/sphere integrates spheres"),
  
@@ -122,6 +140,8 @@ CASES = [
      "fix b of style damping/cundall makes forces"),
     ("PAIR *dpd* bpm/spring", "OVERDAMPED", paired("dpd 2.5", "IJ NAME 4.5", before=TODAY),
      "pair_style dpd has friction between spheres (gamma 4.5)"),
+    ("PAIR *dpd* bpm/spring", "OVERDAMPED", paired("dpd/omp 2.5", "IJ NAME 4.5", before=TODAY),
+     "pair_style dpd/omp has friction between spheres (gamma 4.5)"),
     ("PAIR *dpd* bpm/spring", "OVERDAMPED", paired("bpm/spring 2.5", "IJ NAME 4.5", before=TODAY),
      "pair_style bpm/spring has friction"),
     ("PAIR *dpd*", "OVERDAMPED", paired("mdpd/rhosum 2.5", "IJ NAME 1", before=TODAY),
@@ -232,6 +252,10 @@ FINE = {
     "a drag where ours is applied to others": scene() + ["group one id 1", "group two id 2",
                                                          "fix drag one stokes_dynamics", "fix b two viscous 1",
                                                          "fix move ours nve/sphere"],
+    "forces set behind the fix that adds the drag": scene() + INERTIA.splitlines() + ["fix b ours setforce 0 0 0"],
+    "forces set where the pair style adds the drag": scene(f"{WORDS} add_force yes")
+    + ["fix b ours setforce 0 0 0", "fix move ours nve/sphere"],
+    "nve where nobody turns": scene() + ["fix drag ours stokes_dynamics", "fix move ours nve"],
     "rigid without langevin": scene() + ["fix drag ours stokes_dynamics", "fix b ours rigid single"],
     "spins that the fluid does not damp": scene(before=TODAY) + ["fix b ours viscous/sphere 1", *INERTIA.splitlines()],
     "asphere where nobody turns": scene(atoms=ELLIPSOID, before=ROUND)
