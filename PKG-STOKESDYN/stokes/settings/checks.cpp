@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <map>
@@ -54,6 +55,21 @@ void warn_of_shared_films(const Voice &voice, double spheres)
   voice.warn("keyword lubrication: with one point per sphere it slows down a cloud of " +
              text(spheres) + " close spheres that fall together: by 5 % at 200, by 26 % at 2000; "
              "use multiblob 12");
+}
+
+void warn_of_one_molecule(const Voice &voice, const Scene &scene)
+{
+  int64_t lowest = INT64_MAX, highest = INT64_MIN;
+  for (int k = 0; k < scene.size(); k++) {
+    lowest = std::min(lowest, scene.molecule(k));
+    highest = std::max(highest, scene.molecule(k));
+  }
+  const MPI_Comm world = voice.lmp->world;
+  lowest = smallest_of_all(world, lowest);
+  highest = largest_of_all(world, highest);
+  if (lowest == highest && lowest != 0 && sum_of_all(world, scene.size()) > 1)
+    voice.warn("keyword lubrication: all spheres have the molecule ID " + std::to_string(lowest) +
+               ", and there are no films within a molecule: give free spheres the molecule ID 0");
 }
 
 void refuse_close_oseen(const Voice &voice, const Scene &scene)

@@ -25,6 +25,9 @@ void warn_of_misfit(const Voice &voice, double misfit);
  * fluid falls with them. */
 void warn_of_shared_films(const Voice &voice, double spheres);
 
+/* Within a molecule there are no films: of spheres that all have one molecule ID nobody has any. */
+void warn_of_one_molecule(const Voice &voice, const Scene &scene);
+
 /* A cut-off that ends within a clump leaves out a part of it, and then its drag is too large: by 10
  * % for a chain of ten touching spheres that see each other up to 10.5 a. Tells of the clump with
  * the lowest molecule ID. */

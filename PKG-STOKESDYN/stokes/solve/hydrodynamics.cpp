@@ -241,6 +241,7 @@ void Hydrodynamics::place()
   if (first) check_stream_at_walls(voice, how.boundary, ambient, settings.lubrication.on);
   if (settings.lubrication.on && !shells.settings.on() && first)
     warn_of_shared_films(voice, sum_of_all(world, (double) scene.size()));
+  if (settings.lubrication.on && !settings.rigid.on && first) warn_of_one_molecule(voice, scene);
   if (how.tensor == SD_TENSOR_OSEEN) refuse_close_oseen(voice, scene);
   if (first && how.clumps_only && std::isfinite(how.cutoff) && how.taper == SD_TAPER_NONE)
     warn_of_short_cutoff(voice, scene);

@@ -260,6 +260,19 @@ def test_what_is_lost_in_shear_is_the_same_with_and_without_inertia(simulation):
     assert sim.fix_scalar() == pytest.approx(power, rel=1e-7)
 
 
+@pytest.mark.parametrize("molecule, words, warned", [
+    ((3, 3, 3), "multiblob 12", True), ((3, 3, 4), "multiblob 12", False), ((0, 0, 0), "multiblob 12", False),
+    ((3, 3, 3), "rigid_clumps yes multiblob 12", False), ((3, 0, 3), "rotation yes", False),
+    ((3,), "multiblob 12", False)])
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_films_of_spheres_that_are_all_one_molecule_are_warned_of(tmp_path, molecule, words, warned, ranks):
+    spheres = Spheres([(0, 0, 0), (2.05, 0, 0), (5, 0, 0)][:len(molecule)], molecule=molecule)
+    lines = input_lines(spheres, f"cut_off_distance inf visc 1.3 {words} lubrication yes", tmp_path / "data", fix=False)
+    log = " ".join(lmp(tmp_path, lines + [FIX, "run 0"], ranks=ranks).log.split())
+    assert ("keyword lubrication: all spheres have the molecule ID" in log) == warned
+    assert not warned or "the molecule ID 3, and there are no films within a molecule" in log
+
+
 @pytest.mark.parametrize("n, points, warned", [(6, 1, True), (6, 12, False), (5, 1, False)])
 def test_films_of_single_points_in_a_large_cloud_are_warned_of(tmp_path, n, points, warned):
     spheres = Spheres(3.0 * np.array([(i, j, k) for i in range(n) for j in range(n) for k in range(n)]))
