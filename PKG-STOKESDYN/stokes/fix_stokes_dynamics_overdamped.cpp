@@ -29,7 +29,10 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
     random(6), steps(lmp, drives, directions, turned), before(9), output(OUTPUTS), turned(4)
 {
   Keywords in = keywords(narg, arg);
-  in.elsewhere("visc fluid_velocity rotation multiblob lubrication rigid_clumps wall cut_off_distance",
+  in.elsewhere("visc fluid_velocity fluid_vorticity cut_off_distance clumps_only region group rotation rigid_clumps "
+               "shell multiblob multiblob_most one_body lubrication lubrication_gap lubrication_range wall flow tensor "
+               "taper add_force update_every algorithm relative_tolerance max_iter precondition far_field "
+               "far_field_tolerance warm_start",
                "pair_style stokes_dynamics");
   const auto drive = [&] { drives.read(in); };
   in.parse({

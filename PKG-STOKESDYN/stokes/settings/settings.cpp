@@ -14,7 +14,7 @@ namespace StokesDyn {
 StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &words)
 {
   Keywords in(lmp, COMMAND, words);
-  in.elsewhere("temperature noise_tolerance held spin scheme adapt", "fix stokes_dynamics/overdamped")
+  in.elsewhere("temperature noise_tolerance held pin spin squirm torque scheme adapt", "fix stokes_dynamics/overdamped")
       .elsewhere("apply", "fix stokes_dynamics");
   Boundary::refuse_second(in, words);
   parse(in);
@@ -108,7 +108,9 @@ void StokesSettings::take_multiblob(Keywords &in)
 {
   shells.points = in.integer(1);
   in.check(!shells.on() || sd_multiblob_has(shells.points) || shells.points == 162, "must be 1, 12, 42 or 162");
-  shells.half = shells.points == 162 || (shells.points == 42 && in.take("half"));
+  const bool half = in.take("half");
+  in.check(!half || shells.points == 42, "goes with 42 points alone: multiblob 42 half");
+  shells.half = half || shells.points == 162;
 }
 
 void StokesSettings::take_multiblob_most(Keywords &in)

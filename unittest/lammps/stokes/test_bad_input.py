@@ -81,6 +81,7 @@ AT_THE_COMMAND += [(f"{cut} visc 1.3 {words}", [expected]) for cut, words, expec
      "keyword lubrication: yes requires cut_off_distance inf and clumps_only no"),
     ("cut_off_distance inf", "lubrication yes", "keyword lubrication: yes requires rotation yes"),
     ("cut_off_distance inf", "multiblob 13", "keyword multiblob: '13' must be 1, 12, 42 or 162"),
+    ("cut_off_distance inf", "multiblob 12 half", "keyword multiblob: 'half' goes with 42 points alone"),
     ("cut_off_distance inf", "multiblob 12 multiblob_most 100",
      "keyword multiblob_most: '100' must be 12, 42, 162 or 642"),
     ("cut_off_distance inf", "multiblob 42 multiblob_most 12",

@@ -1,7 +1,10 @@
 """fix stokes_dynamics/overdamped beside other commands: what leaves it alone, and what does not go with it."""
+import re
+
 import numpy as np
 import pytest
 
+from neighbour_tables import PACKAGE
 from test_overdamped_clumps import doublet_and_sphere
 from without_inertia import ALL, COMM, FIX, THREE, chains, cloud, weight
 
@@ -91,6 +94,24 @@ def test_bad_words(simulation, words, message):
     sim = simulation(doublet_and_sphere(), ALL, fix=False, box=[(-20.0, 20.0)] * 3, dt=0.01, comm=COMM)
     with pytest.raises(Exception, match=message):
         sim.commands(f"{FIX} {words}")
+
+
+def keywords_of(page):
+    """The first column of the tables below Syntax"""
+    syntax = (PACKAGE / "doc" / page).read_text().split("## Syntax\n")[1].split("\n## ")[0]
+    return sorted(set(re.findall(r"^\| `(\w+)` \|", syntax, re.M)))
+
+
+@pytest.mark.parametrize("page, command, owner", [
+    ("fix_stokes_dynamics_overdamped.md", f"pair_style stokes_dynamics {ALL}", "fix stokes_dynamics/overdamped"),
+    ("pair_stokes_dynamics.md", FIX, "pair_style stokes_dynamics")])
+def test_a_keyword_of_the_other_command_is_sent_there(simulation, page, command, owner):
+    sim = simulation(doublet_and_sphere(), ALL, fix=False, box=[(-20.0, 20.0)] * 3, dt=0.01, comm=COMM)
+    words = keywords_of(page)
+    assert len(words) > 8
+    for word in words:
+        with pytest.raises(Exception, match=f"unknown keyword '{word}': it is a keyword of {owner}"):
+            sim.command(f"{command} {word} 1")
 
 
 @pytest.mark.parametrize("k, told", [(11000, True), (90000, True), (2000, False)])
