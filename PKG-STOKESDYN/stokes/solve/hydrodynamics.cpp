@@ -206,10 +206,10 @@ void Hydrodynamics::velocities(const Solve::ToAtom &take, const Given &known, do
   if (settings.rigid.each_alone()) {
     clump_poses.find();
     clump_poses.velocities(width(), take);
-    if (given_rows.first_in(epochs.selection))    // those that have one are known to have moved here
-      for (int i : solved_atoms) memory->rows.writable(i);
   } else
     status = find_motions(take, drawn, report);
+  if (given_rows.first_in(epochs.selection))    // those that have a row are known to have moved here
+    for (int i : solved_atoms) memory->rows.writable(i);
   // v' is none of this.
   global.last_step = update->ntimestep;
   global.last_solve = -1;
