@@ -36,10 +36,18 @@ static bool meets(const Lattice &lattice, const double from[6], const double int
 
 static const double MOST_COPIES = 1e7, MOST_PER_SPHERE = 1000.0;
 
+/* Does what is moved by so many edges go from rank `me` to p? What goes up by one sees from there what would
+ * go down to it. */
+static bool goes(Halo::Whom whom, int me, int p, double t, double u, double v)
+{
+  const double up = t != 0.0 ? t : u != 0.0 ? u : v;
+  return whom == Halo::ALL || up > 0.0 || (whom == Halo::ABOVE ? up == 0.0 && p < me : up < 0.0 || p != me);
+}
+
 /* What of this rank, at f [3 n] in units of the edges, goes to the block `into` of rank p: each
- * sphere by the edges that take it there. itself: one that need not move goes to its own rank, too */
+ * sphere by the edges that take it there */
 bool Halo::send_to(int p, const Lattice &lattice, const std::vector<double> &f, const double from[6],
-                   const double into[6], bool itself)
+                   const double into[6], Whom whom)
 {
   const double most = std::max(MOST_COPIES, MOST_PER_SPHERE * (double) (f.size() / 3));
   double first[3], last[3], shifts = 1.0;
@@ -58,7 +66,7 @@ bool Halo::send_to(int p, const Lattice &lattice, const std::vector<double> &f, 
     for (double t = begin[0]; t <= end[0]; t++)
       for (double u = begin[1]; u <= end[1]; u++)
         for (double v = begin[2]; v <= end[2]; v++) {
-          if (!itself && p == post.me && t == 0.0 && u == 0.0 && v == 0.0) continue;
+          if (!goes(whom, post.me, p, t, u, v)) continue;
           sphere.push_back((int) (i / 3));
           edges.insert(edges.end(), {(int) t, (int) u, (int) v});
         }
@@ -93,11 +101,11 @@ Halo::Block Halo::around(const Lattice &lattice, const std::vector<double> &x,
   return block;
 }
 
-bool Halo::find(const Lattice &lattice, double reach, const std::vector<double> &x)
+bool Halo::find(const Lattice &lattice, double reach, const std::vector<double> &x, Whom whom)
 {
   std::vector<double> f;
   const Block rows = around(lattice, x, f);
-  return find(lattice, reach, rows, rows, f, false);
+  return find(lattice, reach, rows, rows, f, whom);
 }
 
 bool Halo::find_around(const Lattice &lattice, double reach, const std::vector<double> &x,
@@ -107,14 +115,14 @@ bool Halo::find_around(const Lattice &lattice, double reach, const std::vector<d
   for (int k = 0; k < 8 && lo[0] <= hi[0] && lo[1] <= hi[1] && lo[2] <= hi[2]; k++)
     for (int d = 0; d < 3; d++) corners.push_back(k >> d & 1 ? hi[d] : lo[d]);
   const Block rows = around(lattice, x, f), wanted = around(lattice, corners, of_corners);
-  if (!find(lattice, reach, rows, wanted, f, true)) return false;
+  if (!find(lattice, reach, rows, wanted, f, ALL)) return false;
   post.tell();
   copies = post.rows_in();
   return true;
 }
 
 bool Halo::find(const Lattice &lattice, double reach, const Block &rows, const Block &wanted,
-                const std::vector<double> &f, bool itself)
+                const std::vector<double> &f, Whom whom)
 {
   const Block mine[2] = {rows, wanted};
   std::vector<Block> all(2 * (size_t) post.ranks);    // of each rank
@@ -133,7 +141,7 @@ bool Halo::find(const Lattice &lattice, double reach, const Block &rows, const B
     const bool out = meets(lattice, rows.face, there);
     if (!out && !meets(lattice, theirs, here)) continue;
     const size_t before = sphere.size();
-    if (out && !send_to(p, lattice, f, rows.face, there, itself)) return false;
+    if (out && !send_to(p, lattice, f, rows.face, there, whom)) return false;
     post.partners.push_back({p, (int) (sphere.size() - before), 0});
   }
   return true;

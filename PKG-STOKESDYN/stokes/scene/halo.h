@@ -23,10 +23,15 @@ class Halo {
  public:
   explicit Halo(MPI_Comm world) : post(world) {}
 
+  /* Whom a rank gets. OTHERS: all spheres of other ranks and all images. ABOVE: of two that may see each
+   * other across a border one side alone gets the other one, which is above it: beyond an upper face of the
+   * box, or else on a higher rank. ALL: as OTHERS, and its own. */
+  enum Whom { OTHERS, ABOVE, ALL };
+
   /* Copies of spheres within `reach` of the smallest parallelepiped, with faces as the lattice has
    * them, that holds this rank's rows x [3n]; they are there when extend() has brought them. On all ranks
    * together. false: more copies of this rank's spheres than 1e7 and than 1000 for each. */
-  bool find(const Lattice &lattice, double reach, const std::vector<double> &x);
+  bool find(const Lattice &lattice, double reach, const std::vector<double> &x, Whom whom = OTHERS);
   /* The same within `reach` of what is from lo [3] to hi [3], other on each rank and nothing where
    * lo > hi; this rank's own spheres are among them. They are there at once. */
   bool find_around(const Lattice &lattice, double reach, const std::vector<double> &x,
@@ -68,11 +73,11 @@ class Halo {
   };
   static Block around(const Lattice &lattice, const std::vector<double> &x, std::vector<double> &f);
   bool find(const Lattice &lattice, double reach, const Block &rows, const Block &wanted,
-            const std::vector<double> &f, bool itself);
+            const std::vector<double> &f, Whom whom);
   void tell(const int *to, int *from) const;
   void put_place(const double h[6], const double *x, size_t k, double *out) const;
   bool send_to(int p, const Lattice &lattice, const std::vector<double> &f, const double from[6],
-               const double into[6], bool itself);
+               const double into[6], Whom whom);
 };
 
 }    // namespace StokesDyn

@@ -90,10 +90,10 @@ void Scene::drift(double *rows, int width, double sign) const
       sd_add_edges(signed_jumps, &whole.edges[3 * m], rows + width * (size_t) row_of[m]);
 }
 
-void Scene::surround(double reach, const std::string &keyword)
+void Scene::surround(double reach, const std::string &keyword, Halo::Whom whom)
 {
   const Lattice lattice = Lattice::of(domain);
-  if (!halo.find(lattice, reach, x))
+  if (!halo.find(lattice, reach, x, whom))
     voice.fail_one("keyword " + keyword + ", reaches more than 1000 images of each sphere and 1e7 "
                    "in all; is it in other units?");
   halo.extend(lattice.h, x, {&a, &w});
@@ -110,7 +110,8 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient, std::vec
     if (view() == SD_VIEW_NEAR) {
       look_for_others(ewald.count + second_level.count);
       if (!somebody_sees) return;
-      surround(ewald.reach + 2.0 * extent(most), "far_field: the largest radius, " + text(most));
+      surround(ewald.reach + 2.0 * extent(most), "far_field: the largest radius, " + text(most),
+               one_sided() ? Halo::ABOVE : Halo::OTHERS);
       tell();
       place(size_with_copies(), idle);
     } else {
@@ -153,7 +154,7 @@ void Scene::find_pairs()
   if (settings.whole && settings.clumps_only)
     halo.clear();
   else
-    surround(reach, "cut_off_distance: '" + text(settings.cutoff) + "'");
+    surround(reach, "cut_off_distance: '" + text(settings.cutoff) + "'", Halo::OTHERS);
   const int n_all = size_with_copies();
   sd_status status;
   if (settings.clumps_only) {
@@ -189,6 +190,7 @@ void Scene::place(int n_all_or_copies, std::vector<double> &idle)
   scene.n_all = n_all_or_copies;
   scene.spheres = cloud ? this->cloud() : local();
   scene.pairs = view() == SD_VIEW_LIST ? &list() : nullptr;
+  scene.one_sided = one_sided();
   scene.world = cloud ? ranks_of_cloud() : ranks();
   if (shells) place_points(n_all_or_copies, idle, scene);
   if (scene.n_all < FLOATS_FROM) scene.how.tolerance = 0.0;

@@ -267,13 +267,15 @@ class Scene : protected LAMMPS_NS::Pointers {
   sd_status choose(const sd_ewald_box &box, const sd_ewald_sizes &sizes);
   [[noreturn]] void no_grid(double count, const std::string &where, sd_status status) const;
   void refuse_images(double images, double largest) const;
+  /* Does the engine take each pair across a border on one side alone? */
+  bool one_sided() const { return engine == &sd_mobility_ewald && !ewald.images.wall.sign; }
   void split_slab();
   sd_slab_spheres measure_slab(const sd_slab_walls &walls) const;
   sd_ewald_sizes sizes_of_all(double largest) const;
   sd_ewald_sizes measure(sd_ewald_box &box) const;
   void tell();
   void find_rows();
-  void surround(double reach, const std::string &keyword);
+  void surround(double reach, const std::string &keyword, Halo::Whom whom);
   void find_pairs();
   void look_for_others(double spheres);
   void gather();

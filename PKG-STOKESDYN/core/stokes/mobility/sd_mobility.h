@@ -52,6 +52,10 @@ typedef struct {
   sd_spheres spheres;
   sd_groups groups;
   const sd_pairs *pairs;
+  /* view NEAR. 1: of a pair across a border one side alone has the other sphere as a ghost, and sends what
+   * this ghost feels to its rank by world.reduce; only Ewald sums of one level without walls can. 0: each
+   * side has the other's */
+  int one_sided;
   sd_world world;
 } sd_mobility_scene;
 

@@ -14,6 +14,8 @@ typedef struct {
   /* what the tables are made for */
   sd_ewald ewald;
   int width, ready;
+  /* sd_mobility_scene's */
+  int one_sided;
   sd_world world;
   sd_ewald_waves waves;
   sd_ewald_pairs pairs;
@@ -87,6 +89,7 @@ static sd_status me_place(void *state, const sd_mobility_scene *s)
   sd_status status = SD_OK;
   if (changed(e, s)) status = me_make_tables(e, s);
   e->world = s->world;
+  e->one_sided = s->one_sided;
   e->ewald.box = s->how.ewald->box;
   e->waves.grid.world = s->world;
   sd_ewald_waves_stand(&e->waves, &e->ewald.box);
@@ -121,12 +124,15 @@ static sd_status me_near_part(ewald *e, const double *F, double *sums)
 }
 
 /* u = all of it; rows of what waves do, NULL: without them */
-static void me_take(ewald *e, const double *F, const void *rows, const double *sums, double *u)
+static sd_status me_take(ewald *e, const double *F, const void *rows, const double *sums, double *u)
 {
   const sd_rank_spheres *here = &e->here;
   sd_ewald_pairs_take(&e->pairs, here->n, F, rows, e->tail, e->ewald.box.periodic ? sums : NULL, u);
   if (e->ewald.images.wall.sign)
     sd_ewald_image_pairs_apply(&e->image_pairs, here->n, F, here->ghosts, u);
+  if (!e->one_sided) return SD_OK;
+  sd_ewald_pairs_of_ghosts(&e->pairs, here->n, here->n_all, here->ghosts);
+  return e->world.reduce(e->world.ctx, here->ghosts, u, e->width);
 }
 
 static void clear(const ewald *e, double *u)
@@ -146,8 +152,7 @@ static sd_status me_apply(void *state, const double *F, double *u)
   if (status != SD_OK) return status;
   void *rows = sd_ewald_pairs_rows(&e->pairs);
   status = sd_ewald_waves_apply(&e->waves, rows);
-  if (status == SD_OK) me_take(e, F, rows, sums, u);
-  return status;
+  return status == SD_OK ? me_take(e, F, rows, sums, u) : status;
 }
 
 /* --- noise: the wave part is drawn, the rest are products --- */
@@ -164,8 +169,7 @@ static sd_status apply_rest(void *state, const double *F, double *u)
   ewald *e = state;
   double sums[SD_EWALD_SUMS];
   const sd_status status = me_near_part(e, F, sums);
-  if (status == SD_OK) me_take(e, F, NULL, sums, u);
-  return status;
+  return status == SD_OK ? me_take(e, F, NULL, sums, u) : status;
 }
 
 static sd_status draw(void *state, const sd_random_key *key, double *u)

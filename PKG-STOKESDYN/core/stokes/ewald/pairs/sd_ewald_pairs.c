@@ -97,8 +97,8 @@ static void pairs_fill_rows(sd_ewald_pairs *p)
 
 /* --- neighbours --- */
 
-/* Of the neighbours of ghosts, from `begin` on, those that are ours, and the first, which are of the same
- * bunch; returns their end. */
+/* Of the neighbours of ghosts, from `begin` on, those that are ours; nothing in place of the first, which are of
+ * the same bunch. Returns their end. */
 static long keep_ours(sd_ewald_pairs *p, int n, long begin, int same, long end)
 {
   long ours = begin + same;
@@ -107,6 +107,7 @@ static long keep_ours(sd_ewald_pairs *p, int n, long begin, int same, long end)
     if (row < p->rows && p->sphere[row] < n) p->neighbor[ours++] = row;
   }
   if (ours == begin + same) return begin;
+  for (long k = begin; k < begin + same; k++) p->neighbor[k] = p->rows;
   while ((ours - begin) % p->full) p->neighbor[ours++] = p->rows;
   return ours;
 }
@@ -117,26 +118,30 @@ typedef struct {
   long many;
 } finder;
 
-static int all_ghosts(const sd_ewald_pairs *p, int n, int row, int end)
+static int ep_is_ghost(const finder *f, int row)
 {
-  while (row < end && p->sphere[row] >= n) row++;
-  return row == end;
+  return f->pairs->sphere[row] >= f->n;
 }
 
+/* Ghosts and spheres of ours are bunches of their own: nobody wants pairs of ghosts. */
 static sd_status visit_bunch(void *ctx, int row, int end, int ranges, long room)
 {
   finder *f = ctx;
   sd_ewald_pairs *p = f->pairs;
-  if (!sd_extend(&p->neighbor, sizeof(int), (size_t) (f->many + room + 3 * SD_FULL), &p->neighbor_room))
-    return SD_ENOMEMORY;
-  p->begin[p->bunches] = row;
-  p->first[p->bunches++] = f->many;
-  const long last = sd_ewald_pairs_near(p, row, end, ranges, p->cells.range, f->many);
-  f->many = all_ghosts(p, f->n, row, end) ? keep_ours(p, f->n, f->many, end - row - 1, last) : last;
+  for (int next; row < end; row = next) {
+    const int ghosts = ep_is_ghost(f, row);
+    for (next = row + 1; next < end && ep_is_ghost(f, next) == ghosts;) next++;
+    if (!sd_extend(&p->neighbor, sizeof(int), (size_t) (f->many + room + 3 * SD_FULL), &p->neighbor_room))
+      return SD_ENOMEMORY;
+    p->begin[p->bunches] = row;
+    p->first[p->bunches++] = f->many;
+    p->cells.range[0] = row + 1;
+    const long last = sd_ewald_pairs_near(p, row, next, ranges, p->cells.range, f->many);
+    f->many = ghosts ? keep_ours(p, f->n, f->many, next - row - 1, last) : last;
+  }
   return SD_OK;
 }
 
-/* Pairs of ghosts, which nobody wants, are there only where one bunch holds ghosts and spheres of ours. */
 static sd_status find_bunches(sd_ewald_pairs *p, int n)
 {
   finder f = {p, n, 0};
@@ -222,4 +227,10 @@ void sd_ewald_pairs_take(const sd_ewald_pairs *p, int n, const double *F, const 
     sd_ewald_groups_apply(p, k, end, F, u);
   }
   p->numbers->take(p, done, p->n, rows, tail, sums, u);
+}
+
+void sd_ewald_pairs_of_ghosts(const sd_ewald_pairs *p, int n, int n_all, double *u)
+{
+  memset(u, 0, sizeof(double) * (size_t) p->width * (size_t) (n_all - n)); /* some have no radius */
+  p->numbers->of_ghosts(p, n, u);
 }

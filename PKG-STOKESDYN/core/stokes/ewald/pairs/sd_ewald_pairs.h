@@ -37,6 +37,9 @@ void *sd_ewald_pairs_rows(sd_ewald_pairs *p);
 void sd_ewald_pairs_take(const sd_ewald_pairs *p, int n, const double *F, const void *rows,
                          const double *tail, const double *sums, double *u);
 
+/* u [width (n_all - n)] = what is near of the ghosts: of ours alone, since no pair of ghosts counts */
+void sd_ewald_pairs_of_ghosts(const sd_ewald_pairs *p, int n, int n_all, double *u);
+
 void sd_ewald_pairs_free(sd_ewald_pairs *p);
 
 SD_END_C

@@ -137,15 +137,27 @@ static far_part far_of(const sd_ewald_pairs *p, const double *C, const double *S
   return far;
 }
 
+/* Number d of m of what is near of row k, over w and near_unit_of */
+static inline double near_number(int m, const sd_ewald_pairs *p, long k, int d)
+{
+  const real *near = p->u;
+  if (m == 3) return near[4 * k + d];
+  return d < 3 ? near[8 * k + d] : p->scale * near[8 * k + d + 1];
+}
+
+static double near_unit_of(const sd_ewald_pairs *p)
+{
+  return p->scale / (8.0 * SD_PI) / p->unit;
+}
+
 static inline void take_of_width(int m, const sd_ewald_pairs *p, long begin, long end, const real *waves,
                                  const double *tail, const double *sums, double *u)
 {
-  const real *row = p->row, *turn = p->torque_row, *near = p->u;
-  const int step = m == 6 ? 8 : 4;
-  const double scale = p->scale, length = 1.0 / scale, alike = self_of(p, 0.0), turned = 0.25 * p->origin[SD_I1];
+  const real *row = p->row, *turn = p->torque_row;
+  const double length = 1.0 / p->scale, alike = self_of(p, 0.0), turned = 0.25 * p->origin[SD_I1];
   const far_part far = far_of(p, tail, sums);
   const double over_unit = 1.0 / p->unit; /* of a power of two: exact */
-  const double near_unit = scale / (8.0 * SD_PI) * over_unit;
+  const double near_unit = near_unit_of(p);
   for (long i = begin; i < end; i++) {
     const long k = p->target[i], j = p->sphere[k];
     const double w = row[8 * k + 7], unit = w * near_unit, wave = w * over_unit;
@@ -153,7 +165,7 @@ static inline void take_of_width(int m, const sd_ewald_pairs *p, long begin, lon
     const double b = p->equal ? 0.0 : sd_ewald_b(&p->ewald, row[8 * k + 3] * length);
     const double self = p->equal ? alike : self_of(p, b);
     for (int d = 0; d < m; d++) {
-      const double sum = d < 3 ? unit * near[step * k + d] : unit * scale * near[step * k + d + 1];
+      const double sum = unit * near_number(m, p, k, d);
       const double beyond = d < 3 ? far.of_all[d] - b * far.of_b[d] : far.turned[d - 3];
       const double own = d < 3 ? self * row[8 * k + 4 + d] : turned * length * turn[4 * k + d - 3];
       double v = sum - wave * own;
@@ -170,8 +182,26 @@ static void rows_take(const sd_ewald_pairs *p, long begin, long end, const void 
   else take_of_width(3, p, begin, end, waves, tail, sums, u);
 }
 
+static inline void of_ghosts_of_width(int m, const sd_ewald_pairs *p, int n, double *u)
+{
+  const real *row = p->row;
+  const double near_unit = near_unit_of(p);
+  for (long k = 0; k < p->rows; k++) {
+    const long ghost = (long) p->sphere[k] - n;
+    if (ghost < 0) continue;
+    const double unit = row[8 * k + 7] * near_unit;
+    for (int d = 0; d < m; d++) u[m * ghost + d] = unit * near_number(m, p, k, d);
+  }
+}
+
+static void rows_of_ghosts(const sd_ewald_pairs *p, int n, double *u)
+{
+  if (p->width == 6) of_ghosts_of_width(6, p, n, u);
+  else of_ghosts_of_width(3, p, n, u);
+}
+
 #ifdef SD_SINGLE
-const struct sd_ewald_rows sd_ewald_rows_floats = {rows_stand, rows_load, rows_of_targets, rows_take};
+const struct sd_ewald_rows sd_ewald_rows_floats = {rows_stand, rows_load, rows_of_targets, rows_take, rows_of_ghosts};
 #else
-const struct sd_ewald_rows sd_ewald_rows_doubles = {rows_stand, rows_load, rows_of_targets, rows_take};
+const struct sd_ewald_rows sd_ewald_rows_doubles = {rows_stand, rows_load, rows_of_targets, rows_take, rows_of_ghosts};
 #endif

@@ -17,6 +17,8 @@ struct sd_ewald_rows {
   /* of targets begin ... end - 1 */
   void (*take)(const sd_ewald_pairs *p, long begin, long end, const void *waves, const double *tail,
                const double *sums, double *u);
+  /* what is near of the ghosts with radius, u [width] each */
+  void (*of_ghosts)(const sd_ewald_pairs *p, int n, double *u);
 };
 
 extern const struct sd_ewald_rows sd_ewald_rows_doubles, sd_ewald_rows_floats;
