@@ -145,7 +145,7 @@ sd_status sd_field_plan(sd_field *f, sd_field_sum how, const sd_ewald_box *box, 
 static int sort_sources(sd_field *f, const sd_field_sources *s)
 {
   return sd_reserve(&f->centre, sizeof(double), 3 * (size_t) s->n + SD_FULL, &f->centre_room) &&
-      sd_ewald_cells_sort(&f->cells, s->x, NULL, s->n, 2.0 * f->how.ewald.range, f->centre) == SD_OK;
+      sd_ewald_cells_sort(&f->cells, s->x, NULL, s->n, 2.0 * f->how.ewald.range, 0, f->centre) == SD_OK;
 }
 
 /* In the order that is given */

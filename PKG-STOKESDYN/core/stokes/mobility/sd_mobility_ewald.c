@@ -81,25 +81,16 @@ static int all_finite(const sd_mobility_scene *s)
   return 1;
 }
 
-static sd_status me_place(void *state, const sd_mobility_scene *s)
+/* Pairs and waves, unless something has failed; on all ranks together */
+static sd_status me_stand(ewald *e, const sd_mobility_scene *s, sd_status status)
 {
-  ewald *e = state;
   sd_rank_spheres *here = &e->here;
-  here->n = s->n;
-  sd_status status = SD_OK;
-  if (changed(e, s)) status = me_make_tables(e, s);
-  e->world = s->world;
-  e->one_sided = s->one_sided;
-  e->ewald.box = s->how.ewald->box;
-  e->waves.grid.world = s->world;
-  sd_ewald_waves_stand(&e->waves, &e->ewald.box);
-  if (!(e->ewald.count > 0.0)) return status;
   int brick[6] = {0};
   if (status == SD_OK && !all_finite(s)) status = SD_ENOTFINITE;
   if (status == SD_OK) status = take_spheres(e, s);
   const sd_groups groups = groups_of(e, s);
   if (status == SD_OK)
-    status = sd_ewald_pairs_place(&e->pairs, &here->spheres, &groups, s->n, s->n_all);
+    status = sd_ewald_pairs_place(&e->pairs, &here->spheres, &groups, s->n, s->n_all, e->waves.turn);
   if (status == SD_OK && e->ewald.images.wall.sign)
     status = sd_ewald_image_pairs_place(&e->image_pairs, &e->ewald.images.wall, &here->spheres, s->n,
                                         s->n_all);
@@ -107,6 +98,25 @@ static sd_status me_place(void *state, const sd_mobility_scene *s)
   if (status == SD_OK)
     status = sd_ewald_waves_find(&e->waves, &here->spheres, here->sphere, here->own, brick);
   return sd_ewald_waves_meet(&e->waves, brick, status, &e->world);
+}
+
+/* Spheres are spread in the order of the pairs' rows, which is that of the grid: where the frame has turned, all of
+ * it again. */
+static sd_status me_place(void *state, const sd_mobility_scene *s)
+{
+  ewald *e = state;
+  sd_status status = SD_OK;
+  e->here.n = s->n;
+  if (changed(e, s)) status = me_make_tables(e, s);
+  e->world = s->world;
+  e->one_sided = s->one_sided;
+  e->ewald.box = s->how.ewald->box;
+  e->waves.grid.world = s->world;
+  sd_ewald_waves_stand(&e->waves, &e->ewald.box);
+  if (!(e->ewald.count > 0.0)) return status;
+  const int turn = e->waves.turn;
+  status = me_stand(e, s, status);
+  return status == SD_OK && e->waves.turn != turn ? me_stand(e, s, status) : status;
 }
 
 /* --- product --- */

@@ -107,7 +107,7 @@ static sd_status place(void *state, const sd_mobility_scene *scene)
     status = SD_ENOMEMORY;
   if (status == SD_OK && !stand_spheres(s, &scene->spheres)) status = SD_ENOTFINITE;
   if (status == SD_OK)
-    status = sd_ewald_pairs_place(&s->pairs, &here->spheres, &groups, n, here->n_all);
+    status = sd_ewald_pairs_place(&s->pairs, &here->spheres, &groups, n, here->n_all, s->waves.turn);
   if (status == SD_OK) status = place_images(s);
   if (status == SD_OK) list_spheres(s);
   if (status == SD_OK)

@@ -53,7 +53,7 @@ static void near_parts_agree(void **state)
           if (!sd_isa_supported(isa)) continue;
           sd_ewald_pairs p = {0};
           sd_ewald_pairs_create(&p, &how, SD_KERNELS_OF(sd_ewald, plain, isa), width);
-          assert_int_equal(sd_ewald_pairs_place(&p, &spheres, &none, N - 20, N), SD_OK); /* the last are ghosts */
+          assert_int_equal(sd_ewald_pairs_place(&p, &spheres, &none, N - 20, N, 0), SD_OK); /* the last are ghosts */
           assert_int_equal(sd_ewald_pairs_load(&p, N - 20, c.F, c.F + width * (N - 20), NULL, NULL), SD_OK);
           sd_ewald_pairs_apply(&p);
           sd_ewald_pairs_take(&p, N - 20, c.F, NULL, NULL, NULL, k < 0 ? expected : u);
@@ -173,7 +173,7 @@ static void near_parts_of_floats_are_those_of_doubles(void **state)
           sd_ewald_pairs_create(&p, &how, k == -2 ? SD_KERNELS_OF(sd_ewald, plain, isa) :
                                 SD_KERNELS_OF(sd_ewald_single, plain, isa),
                                 width);
-          assert_int_equal(sd_ewald_pairs_place(&p, &spheres, &none, N - 20, N), SD_OK); /* the last are ghosts */
+          assert_int_equal(sd_ewald_pairs_place(&p, &spheres, &none, N - 20, N, 0), SD_OK); /* the last are ghosts */
           assert_int_equal(sd_ewald_pairs_load(&p, N - 20, c.F, c.F + width * (N - 20), NULL, NULL), SD_OK);
           sd_ewald_pairs_apply(&p);
           sd_ewald_pairs_take(&p, N - 20, c.F, NULL, NULL, NULL, k == -2 ? expected : u);

@@ -3,6 +3,8 @@
 
 #include "periodic.h"
 
+#include "sd_ewald_waves.h"
+
 enum { N = 300, MOST_RANKS = RANKS_MOST };
 
 /* FFTW's own, but on the rank that has no memory left */
@@ -148,6 +150,40 @@ static void several_ranks_are_one(void **state)
   }
 }
 
+/* Spheres that fill a little more than half a period: whichever comes first, the brick is no longer than they are. */
+static void a_brick_is_as_long_as_its_spheres_stand(void **state)
+{
+  (void) state;
+  const layout l = {3, 1, 0, 0.0, 0, 0};
+  cloud c = make(&l);
+  sd_ewald_waves w = {0};
+  int up[N], down[N], brick[6], n = 0;
+  double lowest = INFINITY, highest = -INFINITY;
+  assert_int_equal(sd_ewald_waves_create(&w, &c.how, sd_ewald_kernels_for(&c.how), 3, &(sd_world){0}), SD_OK);
+  const double h = c.how.box.edge[2] / c.how.grid[2];
+  for (int i = 0; i < N; i++) {
+    const double z = c.x[3 * i + 2] - c.how.box.origin[2];
+    if (z > 0.6 * c.how.box.edge[2]) continue;
+    lowest = fmin(lowest, z);
+    highest = fmax(highest, z);
+    up[n++] = i;
+  }
+  for (int k = 0; k < n; k++)
+    for (int j = k; j > 0 && c.x[3 * up[j - 1] + 2] > c.x[3 * up[j] + 2]; j--) {
+      const int other = up[j];
+      up[j] = up[j - 1];
+      up[j - 1] = other;
+    }
+  for (int k = 0; k < n; k++) down[n - 1 - k] = up[k];
+  const double most = (highest - lowest) / h + 1.0 + c.how.points;
+  const sd_spheres spheres = {c.x, c.a, c.w};
+  for (int k = 0; k < 2; k++) {
+    assert_int_equal(sd_ewald_waves_find(&w, &spheres, k ? down : up, n, brick), SD_OK);
+    assert_true(brick[5] <= most);
+  }
+  sd_ewald_waves_free(&w);
+}
+
 /* One rank meets a place that is no number: all say so, none waits. */
 static void a_place_that_is_no_number_stops_all_ranks(void **state)
 {
@@ -182,6 +218,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(several_ranks_are_one),
+      cmocka_unit_test(a_brick_is_as_long_as_its_spheres_stand),
       cmocka_unit_test(a_place_that_is_no_number_stops_all_ranks),
       cmocka_unit_test(a_grid_without_memory_stops_all_ranks),
   };

@@ -31,7 +31,7 @@ static void cut_into_cells(sd_ewald_cells *c, const double *x, const double *the
     if (!ec_takes_part(there, i)) continue;
     many++;
     for (int d = 0; d < 3; d++) {
-      const double at = x[3 * (long) i + d];
+      const double at = sd_ewald_turned(x + 3 * (long) i, c->turn, d);
       lo[d] = at < lo[d] ? at : lo[d];
       hi[d] = at > hi[d] ? at : hi[d];
     }
@@ -52,22 +52,23 @@ static void cut_into_cells(sd_ewald_cells *c, const double *x, const double *the
   }
 }
 
-static int ec_along(const sd_ewald_cells *c, double x, int d)
+static int ec_along(const sd_ewald_cells *c, const double *x, int d)
 {
-  const int k = (int) ((x - c->lo[d]) * c->inverse);
+  const int k = (int) ((sd_ewald_turned(x, c->turn, d) - c->lo[d]) * c->inverse);
   return k < c->n[d] ? k : c->n[d] - 1;
 }
 
 static int ec_cell_of(const sd_ewald_cells *c, const double *x)
 {
-  return (ec_along(c, x[0], 0) * c->n[1] + ec_along(c, x[1], 1)) * c->n[2] + ec_along(c, x[2], 2);
+  return (ec_along(c, x, 0) * c->n[1] + ec_along(c, x, 1)) * c->n[2] + ec_along(c, x, 2);
 }
 
 /* Counting sort */
 sd_status sd_ewald_cells_sort(sd_ewald_cells *c, const double *x, const double *there, int count,
-                              double reach, double *centre)
+                              double reach, int turn, double *centre)
 {
   c->reach = reach;
+  c->turn = turn;
   c->centre = centre;
   cut_into_cells(c, x, there, count);
   const int all = c->n[0] * c->n[1] * c->n[2];
@@ -83,7 +84,8 @@ sd_status sd_ewald_cells_sort(sd_ewald_cells *c, const double *x, const double *
     if (ec_takes_part(there, i)) c->place[first[ec_cell_of(c, x + 3 * (long) i) + 1]++] = i;
   c->rows = first[all];
   for (long k = 0; k < c->rows; k++)
-    for (long d = 0; d < 3; d++) centre[d * c->rows + k] = x[3 * (long) c->place[k] + d];
+    for (int d = 0; d < 3; d++)
+      centre[(long) d * c->rows + k] = sd_ewald_turned(x + 3 * (long) c->place[k], turn, d);
   return SD_OK;
 }
 

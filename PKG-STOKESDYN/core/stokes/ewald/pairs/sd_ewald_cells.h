@@ -3,7 +3,10 @@
  *
  * Rows are the places that take part, in order of cells. Each pair is found once, by the row that comes
  * first: later rows near it stand in few ranges of rows, columns of cells along z. Rows that follow each
- * other and are close may be asked about in bunches: what is near one is near most of the others. */
+ * other and are close may be asked about in bunches: what is near one is near most of the others.
+ *
+ * Rows stand in a frame that is turned cyclically: its direction d is d + turn of the places. So they are in the
+ * order of a grid in that frame. */
 #ifndef SD_EWALD_CELLS_H
 #define SD_EWALD_CELLS_H
 
@@ -19,7 +22,8 @@ enum { SD_FULL = 8 };
 /* Zero-initialise; sd_ewald_cells_free in the end. */
 typedef struct {
   double reach;
-  /* [rows] which place; [3][rows] where it is, in memory of the caller */
+  int turn;
+  /* [rows] which place; [3][rows] where it is in the frame, in memory of the caller */
   int rows, *place;
   double *centre;
   /* a box around them, cut into n [3] cells of one side; [cells + 1] first row of each */
@@ -34,7 +38,13 @@ typedef struct {
 /* Of the places x [3 count] those that take part (there [count] > 0; NULL: all), for pairs within reach.
  * centre [3 count + SD_FULL]: memory that the walk needs. SD_OK or SD_ENOMEMORY. */
 sd_status sd_ewald_cells_sort(sd_ewald_cells *c, const double *x, const double *there, int count,
-                              double reach, double *centre);
+                              double reach, int turn, double *centre);
+
+/* A place in a frame that is turned */
+static inline double sd_ewald_turned(const double *x, int turn, int d)
+{
+  return x[(d + turn) % 3];
+}
 
 /* The rows of each cell along z, so that bunches of them are close */
 void sd_ewald_cells_order(sd_ewald_cells *c);

@@ -71,7 +71,7 @@ sd_status sd_ewald_groups_sort(sd_ewald_pairs *p, const sd_groups *groups, int n
   /* a hair more, so that rounding of the middles loses no pair */
   const double reach = (p->ewald.range + 2.0 * g->farthest) * (1.0 + 1e-9);
   const sd_status status =
-      sd_ewald_cells_sort(&g->cells, g->middle, points, groups->n, reach, points + count);
+      sd_ewald_cells_sort(&g->cells, g->middle, points, groups->n, reach, p->turn, points + count);
   if (status != SD_OK) return status;
   p->rows = p->n = 0;
   for (int k = 0; k < g->cells.rows; k++) {

@@ -45,6 +45,8 @@ typedef struct sd_ewald_pairs {
   /* forces in rows are times this: 1, or a power of two where floats would not hold them */
   double unit;
   sd_spheres spheres;
+  /* of the frame of cells and centres */
+  int turn;
   /* of the spheres with radius, ours and ghosts, in order of cells: their number, [rows] which */
   int rows, *sphere;
   /* all radii are a_ref */

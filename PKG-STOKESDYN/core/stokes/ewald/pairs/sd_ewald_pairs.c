@@ -67,7 +67,7 @@ static int ep_make_room(sd_ewald_pairs *p, int n)
 static sd_status sort_spheres(sd_ewald_pairs *p, int n, int n_all)
 {
   const sd_status status =
-      sd_ewald_cells_sort(&p->cells, p->spheres.x, p->spheres.a, n_all, p->ewald.range, p->u);
+      sd_ewald_cells_sort(&p->cells, p->spheres.x, p->spheres.a, n_all, p->ewald.range, p->turn, p->u);
   if (status != SD_OK) return status;
   if (p->most > 1) sd_ewald_cells_order(&p->cells);
   p->rows = p->cells.rows;
@@ -87,7 +87,7 @@ static void pairs_fill_rows(sd_ewald_pairs *p)
     const long i = p->sphere[k], later = p->sphere[k + AHEAD < p->rows ? k + AHEAD : k];
     sd_fetch(p->spheres.x + 3 * later);
     sd_fetch(p->spheres.a + later);
-    for (int d = 0; d < 3; d++) centre[(long) d * p->rows + k] = p->spheres.x[3 * i + d];
+    for (int d = 0; d < 3; d++) centre[(long) d * p->rows + k] = sd_ewald_turned(p->spheres.x + 3 * i, p->turn, d);
     largest = fmax(largest, p->spheres.a[i]);
     p->equal = p->equal && p->spheres.a[i] == p->ewald.a_ref;
   }
@@ -153,10 +153,11 @@ static sd_status find_bunches(sd_ewald_pairs *p, int n)
 }
 
 sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, const sd_groups *groups, int n,
-                               int n_all)
+                               int n_all, int turn)
 {
   const int grouped = sd_ewald_groups_serve(p, groups);
   p->spheres = *s;
+  p->turn = turn;
   if (!ep_make_room(p, n_all)) return SD_ENOMEMORY;
   const sd_status status = grouped ? sd_ewald_groups_sort(p, groups, n) : sort_spheres(p, n, n_all);
   if (status != SD_OK) return status;

@@ -163,13 +163,27 @@ static int wv_inside(const sd_ewald_box *b, double x, int d)
   return x >= b->origin[d] - spare && x <= b->origin[d] + b->edge[d] + spare;
 }
 
-/* In a periodic box all stand within half a period of the first. */
+/* Along d, where they would fill more than a period, within half a period of their mean */
+static void keep_together(sd_ewald_waves *w, int d, double mean, int *lo, int *hi)
+{
+  const int period = w->ewald.grid[d], points = w->ewald.points;
+  if (!w->ewald.box.periodic || *hi - *lo < period + points) return;
+  const double begin = floor(mean - 0.5 * period);
+  for (int i = 0; i < w->n; i++) {
+    int *at = w->place[i].at + d;
+    *at -= period * (int) sd_whole_below((*at - begin) / period);
+    if (i == 0 || *at < *lo) *lo = *at;
+    if (i == 0 || *at + points > *hi) *hi = *at + points;
+  }
+}
+
+/* They stand as they are given, whatever their order: so do ranks' bricks. */
 static int find_places(sd_ewald_waves *w, const sd_spheres *spheres, int *brick)
 {
   enum { AHEAD = 12 }; /* spheres stand anywhere in memory */
   const sd_ewald_box *box = &w->ewald.box;
   const int points = w->ewald.points;
-  double near[3] = {0.0};
+  double mean[3] = {0.0};
   int hi[3] = {0}, *lo = brick, sound = 1;
   for (int i = 0; i < w->n && sound; i++) {
     const int j = w->sphere[i], later = w->sphere[i + AHEAD < w->n ? i + AHEAD : i];
@@ -182,13 +196,11 @@ static int find_places(sd_ewald_waves *w, const sd_spheres *spheres, int *brick)
     turn_numbers(x, w->turn);
     on_grid(w, x, s);
     for (int d = 0; d < 3; d++) {
-      const double period = w->ewald.grid[d];
       sound = sound && fabs(s[d]) < 1e9;
       if (!sound) break;
-      if (i == 0) near[d] = box->periodic ? s[d] - period * floor(s[d] / period) : 0.0;
-      if (box->periodic) s[d] -= period * (double) sd_whole_below((s[d] - near[d]) / period + 0.5);
       const double first = (double) sd_whole_below(s[d] - 0.5 * points);
       p->at[d] = (int) first + 1;
+      mean[d] += (double) p->at[d] / w->n;
       p->v[d] = 2.0 * (s[d] - 0.5 * points - first) - 1.0;
       if (!box->periodic) sound = sound && wv_inside(box, x[d], d);
       if (i == 0 || p->at[d] < lo[d]) lo[d] = p->at[d];
@@ -196,6 +208,7 @@ static int find_places(sd_ewald_waves *w, const sd_spheres *spheres, int *brick)
     }
     p->b = sd_ewald_b(&w->ewald, spheres->a[j]);
   }
+  for (int d = 0; d < 3 && sound; d++) keep_together(w, d, mean[d], lo + d, hi + d);
   for (int d = 0; d < 3; d++) brick[3 + d] = sound && w->n > 0 ? hi[d] - lo[d] : 0;
   return sound;
 }

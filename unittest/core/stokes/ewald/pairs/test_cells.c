@@ -42,7 +42,7 @@ static sd_status see(void *ctx, int row, int end, int ranges, long room)
 }
 
 /* Places in a box of so many reaches, half of them in clusters */
-static void check(double box, int most)
+static void check(double box, int most, int turn)
 {
   static double x[3 * N], centre[3 * N + SD_FULL];
   static seen s;
@@ -50,7 +50,7 @@ static void check(double box, int most)
   for (int i = 0; i < 3 * N; i++) x[i] = i % 6 < 3 || i < 6 ? uniform(&seed, 0, box) : x[i - 6] +
       uniform(&seed, -0.4, 0.4);
   sd_ewald_cells c = {0};
-  assert_int_equal(sd_ewald_cells_sort(&c, x, NULL, N, 1.0, centre), SD_OK);
+  assert_int_equal(sd_ewald_cells_sort(&c, x, NULL, N, 1.0, turn, centre), SD_OK);
   if (most > 1) sd_ewald_cells_order(&c);
   memset(&s, 0, sizeof(s));
   s.cells = &c;
@@ -58,7 +58,9 @@ static void check(double box, int most)
   assert_int_equal(s.next, N);
   assert_true(most == 1 ? s.bunches == N : s.bunches < N);
   for (int k = 0; k < N; k++)
-    for (int d = 0; d < 3; d++) assert_true(centre[d * N + k] == x[3 * c.place[k] + d]);
+    for (int d = 0; d < 3; d++) assert_true(centre[d * N + k] == x[3 * c.place[k] + (d + turn) % 3]);
+  for (int k = 1; k < N; k++) /* planes of cells along the first direction of the frame, one after the other */
+    assert_true((int) ((centre[k] - c.lo[0]) * c.inverse) >= (int) ((centre[k - 1] - c.lo[0]) * c.inverse));
   for (int i = 0; i < N; i++)
     for (int j = i + 1; j < N; j++) {
       double along;
@@ -72,9 +74,9 @@ static void each_pair_is_found_once(void **state)
 {
   (void) state;
   for (int most = 1; most <= MOST; most++) {
-    check(2.5, most);
-    check(6.0, most);
-    check(1000.0, most);
+    check(2.5, most, 0);
+    check(6.0, most, most % 3);
+    check(1000.0, most, 2);
   }
 }
 
@@ -97,7 +99,7 @@ static void spheres_far_apart_in_a_column_do_not_meet(void **state)
     sd_ewald_pairs p = {0};
     sd_ewald_pairs_create(&p, &how, single ? SD_KERNELS_OF(sd_ewald_single, plain, isa) :
                           SD_KERNELS_OF(sd_ewald, plain, isa), 3);
-    assert_int_equal(sd_ewald_pairs_place(&p, &(sd_spheres){x, a, a}, &none, ROW, ROW), SD_OK);
+    assert_int_equal(sd_ewald_pairs_place(&p, &(sd_spheres){x, a, a}, &none, ROW, ROW, 0), SD_OK);
     assert_int_equal(sd_ewald_pairs_load(&p, ROW, F, NULL, NULL, NULL), SD_OK);
     sd_ewald_pairs_apply(&p);
     sd_ewald_pairs_take(&p, ROW, F, NULL, NULL, NULL, single ? u : expected);

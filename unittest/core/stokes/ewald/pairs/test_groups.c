@@ -44,7 +44,7 @@ static void near_part_at(const cloud *c, double origin, const sd_groups *groups,
   sd_ewald_pairs p = {0};
   sd_ewald_pairs_create(&p, &how, kernels, 3);
   for (int again = 0; again < 2; again++) /* a second place() finds what the first has left */
-    assert_int_equal(sd_ewald_pairs_place(&p, &spheres, groups, N, N_ALL), SD_OK);
+    assert_int_equal(sd_ewald_pairs_place(&p, &spheres, groups, N, N_ALL, 0), SD_OK);
   assert_int_equal(sd_ewald_pairs_load(&p, N, c->F, c->F + 3 * N, NULL, NULL), SD_OK);
   sd_ewald_pairs_apply(&p);
   sd_ewald_pairs_take(&p, N, c->F, NULL, NULL, NULL, u);
