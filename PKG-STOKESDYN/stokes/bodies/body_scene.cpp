@@ -285,8 +285,8 @@ sd_status BodyScene::stand_at_wall(sd_body &body, double count)
     a.push_back(spheres.a[k]);
     extent = std::max(extent, std::sqrt(sd_dot(&arm[3 * k], &arm[3 * k])) + spheres.a[k]);
     if (!scene.shells) continue;
-    turn.insert(turn.end(), scene.shells->turns() + 9 * k, scene.shells->turns() + 9 * k + 9);
-    mask.push_back(scene.shells->masks()[k]);
+    turn.insert(turn.end(), scene.shells->turn_of(k), scene.shells->turn_of(k) + 9);
+    mask.push_back(scene.shells->mask_of(k));
     kind.push_back(scene.shells->kinds_of_rows()[k]);
     first.push_back(first.back() + scene.shells->points_of_row(k));
   }

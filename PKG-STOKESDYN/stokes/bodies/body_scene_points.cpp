@@ -92,10 +92,9 @@ void BodyScene::put_points()
   bodies.D = D.data();
   whole_shells.resize(n + 1);
   for (int k = 0; k < n; k++)
-    whole_shells[k] = (char) sd_multiblob_mask_is_whole(of_points.spheres.mask + k);
-  const double *turn = poses.clumps().empty() ? nullptr : of_points.spheres.turn;    // free ones do not turn
+    whole_shells[k] = (char) sd_multiblob_is_whole(&of_points.spheres, k);
   const char *whole_ones = rigid.settings.on ? whole_shells.data() : nullptr;
-  faces = {scene.shells->faces(), turn, whole_ones, of_points.spheres.kind,
+  faces = {scene.shells->faces(), of_points.spheres.turn, whole_ones, of_points.spheres.kind,
            of_points.spheres.first};
   bodies.faces = &faces;
   alone.n = all;

@@ -111,7 +111,7 @@ void Lubrication::add_wall(const Scene &where, const sd_wall &wall)
       const sd_multiblob *model = &where.shells->model_of(s.a[k]);
       r.resize(3 * model->n);
       for (int p = 0; p < model->n; p++) {
-        sd_multiply3(where.shells->turns() + 9 * k, model->r + 3 * p, &r[3 * p]);
+        sd_multiply3(where.shells->turn_of(k), model->r + 3 * p, &r[3 * p]);
         for (int d = 0; d < 3; d++) r[3 * p + d] *= s.a[k];
       }
       const sd_multiblob_sphere sphere = {model, x, s.a[k], r.data(), shells.one_body};

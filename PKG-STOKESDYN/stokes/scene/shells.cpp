@@ -119,7 +119,11 @@ void Shells::find(int n, const double *a, Places &places) const
   }
 }
 
-static const double UNITY[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+const double *Shells::free_turn()
+{
+  static const double unity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  return unity;
+}
 
 /* By radius, which says how many points there are, as long as there are forms left */
 void Shells::find_forms(const sd_multiblob_spheres &s)
@@ -127,35 +131,27 @@ void Shells::find_forms(const sd_multiblob_spheres &s)
   std::vector<double> radii;
   forms.assign(s.n, -1);
   for (int k = 0; k < s.n; k++) {
-    const double *row = s.turn + 9 * (size_t) k;
-    if (!sd_multiblob_is_whole(&s, k) || !std::equal(UNITY, UNITY + 9, row)) continue;
+    if (!sd_multiblob_is_whole(&s, k)) continue;
+    if (s.turn && !std::equal(free_turn(), free_turn() + 9, s.turn + 9 * (size_t) k)) continue;
     const size_t form = std::find(radii.begin(), radii.end(), s.a[k]) - radii.begin();
     if (form == radii.size() && form < SD_GROUP_FORMS) radii.push_back(s.a[k]);
     if (form < radii.size()) forms[k] = (int) form;
   }
 }
 
-/* As they are, with all points */
-void Shells::stand_free(int n, const Places &places, std::vector<double> &turns, Masks &masks) const
-{
-  turns.resize(9 * (size_t) n + 9);
-  masks.resize(n + 1);
-  Masks whole;
-  for (const sd_multiblob &model : models) whole.push_back(sd_multiblob_whole(&model));
-  for (int k = 0; k < n; k++) {
-    masks[k] = whole[places.kind[k]];
-    std::copy_n(UNITY, 9, &turns[9 * (size_t) k]);
-  }
-}
-
 void Shells::free_rows(int n, const double *a)
 {
   find(n, a, of_rows);
-  stand_free(n, of_rows, turn, mask);
+  turn.clear();
+  mask.clear();
 }
 
 void Shells::turn_row(int k, const double row[9], const sd_multiblob_mask &there)
 {
+  for (size_t i = mask.size(); i + 1 < of_rows.first.size(); i++) {
+    mask.push_back(mask_of_free(i));
+    turn.insert(turn.end(), free_turn(), free_turn() + 9);
+  }
   std::copy_n(row, 9, &turn[9 * (size_t) k]);
   mask[k] = there;
 }
@@ -165,26 +161,25 @@ std::vector<double> Shells::sent(int n) const
   const size_t width = sent_width();
   std::vector<double> rows(width * (n + 1));
   for (size_t k = 0; k < (size_t) n; k++) {
-    std::copy_n(&turn[9 * k], 9, &rows[width * k]);
-    std::memcpy(&rows[width * k + 9], mask[k].word, words * sizeof(double));
+    const sd_multiblob_mask there = mask_of(k);
+    std::copy_n(turn_of(k), 9, &rows[width * k]);
+    std::memcpy(&rows[width * k + 9], there.word, words * sizeof(double));
   }
   return rows;
 }
 
 void Shells::expand(int n, const std::vector<double> &rows, const sd_spheres &spheres, std::vector<double> *room)
 {
-  const size_t width = sent_width();
-  std::vector<double> turns;
-  Masks there;
-  find(n, spheres.a, of_all);
-  stand_free(n, of_all, turns, there);
-  for (size_t k = 0; k < rows.size() / width; k++) {
+  const size_t width = sent_width(), turned = rows.size() / width;
+  std::vector<double> turns(9 * turned);
+  std::vector<sd_multiblob_mask> there(turned);
+  for (size_t k = 0; k < turned; k++) {
     std::copy_n(&rows[width * k], 9, &turns[9 * k]);
     std::memcpy(there[k].word, &rows[width * k + 9], words * sizeof(double));
   }
-  const sd_multiblob_spheres s = {spheres.x,    spheres.a, turns.data(),
-                                  there.data(), n,         of_all.kind.data(),
-                                  of_all.first.data()};
+  find(n, spheres.a, of_all);
+  const sd_multiblob_spheres s = {spheres.x, spheres.a, turned ? turns.data() : nullptr,
+                                  turned ? there.data() : nullptr, n, of_all.kind.data(), of_all.first.data()};
   find_forms(s);
   const size_t points = of_all.first[n];
   double *to = at_least(3 * points + 3, room ? *room : x);

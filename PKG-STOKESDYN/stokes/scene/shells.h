@@ -83,14 +83,16 @@ class Shells : protected LAMMPS_NS::Pointers {
   /* n rows of this rank with these radii, all of them free; then those of clumps are turned. */
   void free_rows(int n, const double *a);
   void turn_row(int k, const double turn[9], const sd_multiblob_mask &mask);
-  const double *turns() const { return turn.data(); }
-  const sd_multiblob_mask *masks() const { return mask.data(); }
+  const double *turn_of(size_t k) const { return turn.empty() ? free_turn() : &turn[9 * k]; }
+  sd_multiblob_mask mask_of(size_t k) const { return mask.empty() ? mask_of_free(k) : mask[k]; }
   const int *kinds_of_rows() const { return of_rows.kind.data(); }
   const int *first_of_rows() const { return of_rows.first.data(); }
   int points_of_row(size_t k) const { return of_rows.first[k + 1] - of_rows.first[k]; }
   sd_multiblob_spheres spheres(const sd_spheres &rows, int n) const
   {
-    return {rows.x, rows.a, turn.data(), mask.data(), n, kinds_of_rows(), first_of_rows()};
+    const bool free = turn.empty();
+    return {rows.x, rows.a, free ? nullptr : turn.data(), free ? nullptr : mask.data(), n, kinds_of_rows(),
+            first_of_rows()};
   }
 
   // --- the same of rows and copies, or of a cloud
@@ -123,9 +125,9 @@ class Shells : protected LAMMPS_NS::Pointers {
     std::vector<int> kind, first;
   } of_rows, of_all;
   std::vector<int> forms;
-  typedef std::vector<sd_multiblob_mask> Masks;
+  /* of rows; empty: all of them are free */
   std::vector<double> turn;
-  Masks mask;
+  std::vector<sd_multiblob_mask> mask;
   std::vector<double> x, b, w;
   /* of the last expand(): in x, or in the room that was lent */
   const double *places = nullptr;
@@ -136,7 +138,8 @@ class Shells : protected LAMMPS_NS::Pointers {
   void add_model(int n, bool half);
   void warn_of_alike(double largest) const;
   void find(int n, const double *a, Places &places) const;
-  void stand_free(int n, const Places &places, std::vector<double> &turns, Masks &masks) const;
+  static const double *free_turn();
+  sd_multiblob_mask mask_of_free(size_t k) const { return sd_multiblob_whole(&models[of_rows.kind[k]]); }
   void find_forms(const sd_multiblob_spheres &s);
 };
 

@@ -92,13 +92,13 @@ Guess::Start Guess::none() const
   return {false, std::vector<double>(of_points), std::vector<double>(settings.lubrication.on ? of_spheres : 0)};
 }
 
-Guess::Start Guess::recall(Question asked) const
+Guess::Start Guess::recall(Question asked, std::vector<double> room) const
 {
   const bool needless = asked == MOTIONS && settings.forces_are_loads() && !bodies.bodies.known;
   if (needless || solves_kept(asked) == 0.0) return none();
   Start start = {true, {}, {}};
   if (shells.settings.on())
-    start.l = recall_points(line());
+    start.l = recall_points(line(), std::move(room));
   else if (asked == FORCES)
     start.l = recall_forces();
   else
@@ -252,16 +252,16 @@ void Guess::turn_points(size_t k, int n, bool back, double *l) const
 {
   for (int p = 0; p < n && k >= (size_t) scene.lone(); p++, l += 3) {
     const double was[3] = {l[0], l[1], l[2]};
-    (back ? sd_multiply3t : sd_multiply3)(shells.turns() + 9 * k, was, l);
+    (back ? sd_multiply3t : sd_multiply3)(shells.turn_of(k), was, l);
   }
 }
 
 /* As the last solve left them (line 0), or on the line through the last two (1); 0 where there are
  * none. */
-std::vector<double> Guess::recall_points(double line) const
+std::vector<double> Guess::recall_points(double line, std::vector<double> found_then) const
 {
   const int *first = shells.first_of_rows(), *kinds = shells.kinds_of_rows();
-  std::vector<double> found_then(3 * (size_t) first[scene.size()] + 3, 0.0);
+  found_then.assign(3 * (size_t) first[scene.size()] + 3, 0.0);
   for (int kind = 0; kind < shells.kinds() && memory->shell_points > 0; kind++) {
     const int n = shells.model(kind).n;
     const auto read = [&](int i, double *out) {

@@ -43,8 +43,8 @@ class Guess : protected LAMMPS_NS::Pointers {
   /* that of the step: Hydrodynamics::begin */
   FixStokesDynamicsState *memory = nullptr;
 
-  /* Before a solve: from the memory, if it stands */
-  Start recall(Question asked) const;
+  /* Before a solve: from the memory, if it stands. room: of an l that nobody needs any more */
+  Start recall(Question asked, std::vector<double> room = {}) const;
   /* Nothing to begin from */
   Start none() const;
   /* After it: to the memory */
@@ -74,7 +74,7 @@ class Guess : protected LAMMPS_NS::Pointers {
   double solves_kept(Question asked) const;
   std::vector<double> recall_forces() const;
   std::vector<double> recall_motions() const;
-  std::vector<double> recall_points(double line) const;
+  std::vector<double> recall_points(double line, std::vector<double> room = {}) const;
   void keep_perturbation(const std::vector<double> &exerted);
   void keep_motions(const std::vector<double> &v, double kept);
   std::vector<double> recall_spheres(double line) const;

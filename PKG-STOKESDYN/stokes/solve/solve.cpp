@@ -31,7 +31,7 @@ double Solve::memory_usage() const
 sd_status Solve::run(const How &how, sd_solve_report &report)
 {
   found.set(scene.all_epochs().step);
-  return solve_bodies(how, guess.recall(how.asked), report);
+  return solve_bodies(how, guess.recall(how.asked, std::move(l)), report);
 }
 
 sd_status Solve::resist(const std::vector<double> &motions, int max_iter, std::vector<double> &forces)

@@ -99,7 +99,7 @@ static void factor_own_block(const sd_bodies *A, int b, double H[36])
 /* L_ii + X_ii of a sphere */
 static void films_on(const sd_tie *t, int i, double B[36])
 {
-  memcpy(B, t->L->diagonal + 36 * (long) i, 36 * sizeof(double));
+  sd_lubrication_own_block(t->L, i, B);
   for (int p = 0; p < 3; p++)
     for (int q = 0; q < 3; q++) B[6 * p + q] += t->stiff[6 * (long) i + sd_symmetric3_at(p, q)];
 }

@@ -18,9 +18,8 @@ static sd_status reserve_spheres(sd_lubrication *L, const sd_lubrication_scene *
   L->world = s->world;
   if (s->n_all < w->most_spheres) return SD_OK;
   if (!sd_grow(&w->identity, sizeof(*w->identity), all) || !sd_grow(&w->neighbours, number, all) ||
-      !sd_grow(&w->flow, 6 * number, all) || !sd_grow(&L->diagonal, 36 * number, all) ||
-      !sd_grow(&L->carried, 6 * number, all) || !sd_grow(&L->strain, 7 * number, all) ||
-      !sd_grow(&L->others, 6 * number, all))
+      !sd_grow(&w->flow, 6 * number, all) || !sd_grow(&L->diagonal, SD_LUBRICATION_OWN * number, all) ||
+      !sd_grow(&L->carried, 6 * number, all) || !sd_grow(&L->others, 6 * number, all))
     return SD_ENOMEMORY;
   w->most_spheres = s->n_all + 1;
   return SD_OK;
@@ -71,7 +70,6 @@ static sd_status find_flow(sd_lubrication *L, const sd_lubrication_scene *s)
   double *flow = L->work->flow;
   sd_status status = SD_OK;
   memset(L->carried, 0, sizeof(double) * 6 * (size_t) s->n);
-  memset(L->strain, 0, sizeof(double) * 7 * (size_t) s->n);
   L->work->flows = 0;
   L->work->images = 0;
   if (!s->u || s->films) return SD_OK;
@@ -80,7 +78,10 @@ static sd_status find_flow(sd_lubrication *L, const sd_lubrication_scene *s)
   for (long j = 0; s->drift && j < s->n_all - s->n; j++)
     for (int d = 0; d < 3; d++) flow[6 * (s->n + j) + d] += s->drift[3 * j + d];
   for (long j = 0; j < 6 * (long) s->n_all; j++) L->work->flows |= flow[j] != 0.0;
-  return status;
+  if (status != SD_OK || !L->work->flows) return status;
+  if (!sd_reserve(&L->strain, sizeof(double), 7 * (size_t) s->n, &L->work->most_strains)) return SD_ENOMEMORY;
+  memset(L->strain, 0, sizeof(double) * 7 * (size_t) s->n);
+  return SD_OK;
 }
 
 /* V_inf of a pair at x, each of its two spheres 6 numbers */
@@ -204,6 +205,22 @@ static int film_remember(sd_lubrication *L, long k, const sd_pair_resistance *R)
   return 1;
 }
 
+/* L_ii += a block 11 or 22 of a pair, in which YB12 is YB21 */
+static void film_add_own(sd_lubrication *L, long i, const sd_lubrication_link *l)
+{
+  const double *d = l->d;
+  double *FU = L->diagonal + SD_LUBRICATION_OWN * i, *TW = FU + 6, *FW = TW + 6;
+  for (int p = 0; p < 3; p++) {
+    const int q = (p + 1) % 3, r = (p + 2) % 3;
+    FU[p] += l->YA + (l->XA - l->YA) * d[p] * d[p];
+    TW[p] += l->YC + (l->XC - l->YC) * d[p] * d[p];
+    FU[sd_symmetric3_at(p, q)] += (l->XA - l->YA) * d[p] * d[q];
+    TW[sd_symmetric3_at(p, q)] += (l->XC - l->YC) * d[p] * d[q];
+    FW[3 * p + r] += l->YB21 * d[q];
+    FW[3 * p + q] -= l->YB21 * d[r];
+  }
+}
+
 static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long k)
 {
   const int i = L->pair[k][0], j = L->pair[k][1];
@@ -219,16 +236,16 @@ static sd_status add_pair(sd_lubrication *L, const sd_lubrication_scene *s, long
         R, {link->d[0], link->d[1], link->d[2]}, 0.5 * (s->spheres.a[i] + s->spheres.a[c->at])};
   if (L->work->flows && i < L->n) add_carried(L, s, k, &R);
   if (s->films && s->drift && i < L->n) film_drift(L, k, &R);
-  if (i < L->n) sd_lubrication_add_block(&own, L->diagonal + 36 * (long) i);
+  if (i < L->n) film_add_own(L, i, &own);
   *link = block_of(&R, 1, link->d);
   if (j == i) { /* an image on either side: what their 12 and 21 have in UW and WU cancels */
     link->YB12 = link->YB21 = 0.0;
-    sd_lubrication_add_block(link, L->diagonal + 36 * (long) i);
+    film_add_own(L, i, link);
     if (s->films && !film_remember(L, k, &R)) return SD_ENOMEMORY;
     *link = (sd_lubrication_link){.XA = 0.0};
   } else if (j < L->n) {
     own = block_of(&R, 2, link->d);
-    sd_lubrication_add_block(&own, L->diagonal + 36 * (long) j);
+    film_add_own(L, j, &own);
   }
   return SD_OK;
 }
@@ -244,11 +261,11 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
   if (status == SD_OK) status = count_neighbours(L, scene);
   if (status == SD_OK) status = find_flow(L, scene);
   if (status != SD_OK) return status;
-  memset(L->diagonal, 0, sizeof(double) * 36 * (size_t) L->n);
+  memset(L->diagonal, 0, sizeof(double) * SD_LUBRICATION_OWN * (size_t) L->n);
   const long pairs = L->count + L->beyond;
   for (long k = 0; k < pairs && status == SD_OK; k++) {
     /* the second sphere of a pair may be anywhere in memory */
-    sd_fetch(L->diagonal + 36 * (long) L->pair[k + 6 < pairs ? k + 6 : k][1]);
+    sd_fetch(L->diagonal + SD_LUBRICATION_OWN * (long) L->pair[k + 6 < pairs ? k + 6 : k][1]);
     status = add_pair(L, scene, k);
   }
   return status;
@@ -256,7 +273,13 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
 
 void sd_lubrication_add_own(sd_lubrication *L, int i, const double B[36], const double E[6])
 {
-  for (long e = 0; e < 36; e++) L->diagonal[36L * i + e] += B[e];
+  double *FU = L->diagonal + SD_LUBRICATION_OWN * (long) i, *TW = FU + 6, *FW = TW + 6;
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++) {
+      if (p >= q) FU[sd_symmetric3_at(p, q)] += B[6 * p + q];
+      if (p >= q) TW[sd_symmetric3_at(p, q)] += B[6 * (3 + p) + 3 + q];
+      FW[3 * p + q] += B[6 * p + 3 + q];
+    }
   for (long e = 0; e < 36 && L->work->noisy; e++) L->work->alone[36L * i + e] += B[e];
   for (long k = 0; k < 6; k++) L->carried[6L * i + k] += E[k];
 }
@@ -278,6 +301,17 @@ void sd_lubrication_add_block(const sd_lubrication_link *l, double B[36])
     T[r] -= l->YB12 * d[q];
     T[q] += l->YB12 * d[r];
   }
+}
+
+void sd_lubrication_own_block(const sd_lubrication *L, long i, double B[36])
+{
+  const double *FU = L->diagonal + SD_LUBRICATION_OWN * i, *TW = FU + 6, *FW = TW + 6;
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++) {
+      B[6 * p + q] = FU[sd_symmetric3_at(p, q)];
+      B[6 * (3 + p) + 3 + q] = TW[sd_symmetric3_at(p, q)];
+      B[6 * p + 3 + q] = B[6 * (3 + q) + p] = FW[3 * p + q];
+    }
 }
 
 void sd_lubrication_free(sd_lubrication *L)

@@ -73,6 +73,8 @@ typedef struct {
   double d[3], XA, YA, YB12, YB21, XC, YC;
 } sd_lubrication_link;
 
+enum { SD_LUBRICATION_OWN = 21 };
+
 /* Zero-initialise; placed again it keeps its memory; sd_lubrication_free in the end. */
 typedef struct {
   /* spheres of this rank, and with those of other ranks and images */
@@ -87,11 +89,12 @@ typedef struct {
   /* [count + beyond] for preconditioners: what the model itself resists when the two approach each other,
    * beyond their drags, fading from contact to the range */
   double *model;
-  /* [36 n] L_ii, row-major, rows F T, columns U W */
+  /* [SD_LUBRICATION_OWN n] L_ii, which is symmetric: FU and TW, each xx yy zz xy xz yz, and FW, row-major */
   double *diagonal;
   /* [6n] what the flow takes off: forces and torques on the fluid are L V - carried */
   double *carried;
-  /* [7n] of sd_lubrication_strain_power: sum of t w D e of each sphere, and of e.(t w D V_inf) */
+  /* [7n] of sd_lubrication_strain_power: sum of t w D e of each sphere, and of e.(t w D V_inf); NULL: it was
+   * never placed without films */
   double *strain;
   /* [6 (n_all - n)] velocities of the others */
   double *others;
@@ -107,6 +110,8 @@ sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *sc
 void sd_lubrication_add_own(sd_lubrication *L, int i, const double B[36], const double E[6]);
 /* B += L_ij of a pair, row-major, rows F T, columns U W */
 void sd_lubrication_add_block(const sd_lubrication_link *l, double B[36]);
+/* B [36] = L_ii of sphere i < n, likewise */
+void sd_lubrication_own_block(const sd_lubrication *L, long i, double B[36]);
 /* out = L V, rows [6 n]: no aliasing. ctx is an sd_lubrication. SD_OK or that of refresh. */
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out);
 /* out = (L + X) V, X of translations alone: X_ij = -c d d^T of each pair, c [count]; X_ii: own [6 n], xx yy

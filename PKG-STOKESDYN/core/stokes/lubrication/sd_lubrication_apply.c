@@ -2,6 +2,7 @@
 #include "sd_lubrication_internal.h"
 
 #include <math.h>
+#include <string.h>
 
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
 {
@@ -20,7 +21,8 @@ sd_status sd_lubrication_apply_both(const sd_lubrication *L, const double *own, 
 
 void sd_lubrication_strain_power(const sd_lubrication *L, const double *V, double *out)
 {
-  for (long i = 0; i < L->n; i++) {
+  memset(out, 0, sizeof(double) * (size_t) L->n);
+  for (long i = 0; i < L->n && L->work->flows; i++) {
     const double *strain = L->strain + 7 * i;
     out[i] = strain[6];
     for (int k = 0; k < 6; k++) out[i] -= strain[k] * V[6 * i + k];

@@ -50,7 +50,7 @@ struct sd_lubrication_work {
   /* [count] where the scene is noisy, and [36 n] what spheres resist alone; else NULL or old */
   whole_pair *whole;
   double *alone;
-  size_t most_whole, most_alone;
+  size_t most_whole, most_alone, most_strains;
   int noisy;
   /* films */
   own_image *image;

@@ -12,13 +12,26 @@ static inline void add_symmetric(const double B[6], const double V[3], double ou
   out[2] += B[4] * V[0] + B[5] * V[1] + B[2] * V[2];
 }
 
+/* out += L_ii V, with X_ii, its own, if there is one */
+static inline void film_own_times(const double own[SD_LUBRICATION_OWN], const double *X, const double V[6], double out[6])
+{
+  const double *FW = own + 12;
+  double FU[6];
+  for (int e = 0; e < 6; e++) FU[e] = X ? own[e] + X[e] : own[e];
+  add_symmetric(FU, V, out);
+  add_symmetric(own + 6, V + 3, out + 3);
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++) {
+      out[p] += FW[3 * p + q] * V[3 + q];
+      out[3 + q] += FW[3 * p + q] * V[p];
+    }
+}
+
 static void films_times(const sd_lubrication *L, const double *own, const double *c, const double *V, double *out)
 {
-  for (long i = 0; i < L->n; i++) { /* L_ii is symmetric: by columns, which stand as rows do */
+  for (long i = 0; i < L->n; i++) {
     double sum[6] = {0.0};
-    for (int q = 0; q < 6; q++)
-      for (int p = 0; p < 6; p++) sum[p] += L->diagonal[36 * i + 6 * q + p] * V[6 * i + q];
-    if (own) add_symmetric(own + 6 * i, V + 6 * i, sum);
+    film_own_times(L->diagonal + SD_LUBRICATION_OWN * i, own ? own + 6 * i : NULL, V + 6 * i, sum);
     for (int p = 0; p < 6; p++) out[6 * i + p] = sum[p];
   }
   for (long k = 0; k < L->count; k++) {
