@@ -7,6 +7,8 @@
 #include "comm.h"
 #include "neighbor.h"
 
+#include "sd_cells.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -27,6 +29,22 @@ void Scene::out_of_memory()
 
 // --- rows ----------------------------------------------------------------------------------------
 
+/* Rows of fewer spheres stay in the cache, whatever their order is. */
+static const size_t SORTED_FROM = 16384;
+
+/* As they stand in space, as in the cells of the engine, and not as LAMMPS sorts its atoms, so that what is
+ * near a sphere is near it in memory too */
+void Scene::sort_lone_atoms()
+{
+  const size_t n = lone_atoms.size();
+  if (n < SORTED_FROM) return;
+  std::vector<double> places(3 * n);
+  std::vector<int> order(n), unsorted(lone_atoms);
+  for (size_t k = 0; k < n; k++) std::copy_n(atom->x[unsorted[k]], 3, &places[3 * k]);
+  if (sd_cells_sort(places.data(), (int) n, order.data()) != SD_OK) throw std::bad_alloc();
+  for (size_t k = 0; k < n; k++) lone_atoms[k] = unsorted[order[k]];
+}
+
 /* Who has which row, and who that is. */
 void Scene::find_rows()
 {
@@ -34,6 +52,7 @@ void Scene::find_rows()
   row_of.clear();
   for (int i : own)
     if (!settings.whole || atom->molecule[i] == 0) lone_atoms.push_back(i);
+  sort_lone_atoms();
   size_t n = lone_atoms.size();
   if (settings.whole) {
     std::vector<char> active(atom->nlocal + 1, 0);

@@ -275,6 +275,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   sd_ewald_sizes measure(sd_ewald_box &box) const;
   void tell();
   void find_rows();
+  void sort_lone_atoms();
   void surround(double reach, const std::string &keyword, Halo::Whom whom);
   void find_pairs();
   void look_for_others(double spheres);

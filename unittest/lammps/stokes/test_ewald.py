@@ -230,6 +230,21 @@ def test_two_levels_on_three_ranks(tmp_path):
         assert deviation(rows, first, spheres.a) < 1e-10
 
 
+@pytest.mark.ranks(2)
+def test_rows_in_order_of_cells_are_those_of_their_atoms(tmp_path):
+    """So many spheres that one rank sorts its rows by cells, as two ranks with half of them each do not."""
+    rng = np.random.default_rng(8)
+    x = 3.0 * np.array(list(np.ndindex(26, 26, 26))) + rng.uniform(0, 0.9, (26**3, 3))
+    spheres = Spheres(rng.permutation(x), np.ones(len(x)), rng.normal(size=x.shape))
+    lines = input_lines(spheres, f"{ALL} visc 1.3 rotation no relative_tolerance 1e-3", tmp_path / "data",
+                        boundary="p p p", box=[(0.0, 78.0)] * 3)
+    rows = []
+    for ranks in (1, 2):
+        lmp(tmp_path, lines + dump_lines(tmp_path / "dump", columns=FORCES) + ["run 0"], ranks=ranks)
+        rows.append(read_dump(tmp_path / "dump")[0][1][:, 6:])
+    assert deviation(rows[1], rows[0], spheres.a) < 1e-3
+
+
 # --- runs ------------------------------------------------------------------------------------------------------------
 
 def final(sim):

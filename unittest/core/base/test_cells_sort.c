@@ -1,0 +1,65 @@
+/* Points in order of cells. */
+#include "check.h"
+
+#include "sd_cells.h"
+
+#include <string.h>
+
+enum { N = 4096 };
+
+/* How far apart points are that stand side by side, in the mean */
+static double mean_step(const double *x, const int *order)
+{
+  double sum = 0.0;
+  for (int k = 1; k < N; k++) {
+    double square = 0.0;
+    for (int d = 0; d < 3; d++) square += pow(x[3 * order[k] + d] - x[3 * order[k - 1] + d], 2.0);
+    sum += sqrt(square) / (N - 1);
+  }
+  return sum;
+}
+
+/* Every point once; in a unit cube a cell of eight has an edge of 1/8, and along a row of cells the next point is less
+ * than two of these away in the mean (0.66 at random) */
+static void near_points_stand_side_by_side(void **state)
+{
+  (void) state;
+  static double x[3 * N];
+  static int order[N], found[N];
+  uint64_t seed = 5;
+  for (int j = 0; j < 3 * N; j++) x[j] = uniform(&seed, 2.0, 3.0);
+  assert_int_equal(sd_cells_sort(x, N, order), SD_OK);
+  for (int k = 0; k < N; k++) found[order[k]]++;
+  for (int i = 0; i < N; i++) assert_int_equal(found[i], 1);
+  assert_true(mean_step(x, order) < 0.16);
+  for (int k = 1; k < N; k++) assert_true(x[3 * order[k]] > x[3 * order[k - 1]] - 0.145);
+}
+
+/* On a line, at one point, with a place that is no number, and none at all */
+static void any_points_are_sorted(void **state)
+{
+  (void) state;
+  double x[3 * 5] = {0.0};
+  int order[5];
+  const double line[5] = {4.0, 0.5, 3.0, 0.5, 1e300};
+  assert_int_equal(sd_cells_sort(x, 0, order), SD_OK);
+  assert_int_equal(sd_cells_sort(x, 5, order), SD_OK);
+  for (int k = 0; k < 5; k++) assert_int_equal(order[k], k);
+  for (int k = 0; k < 5; k++) x[3 * k] = line[k];
+  assert_int_equal(sd_cells_sort(x, 5, order), SD_OK);
+  assert_int_equal(order[4], 4);
+  x[0] = NAN, x[4] = INFINITY;
+  assert_int_equal(sd_cells_sort(x, 5, order), SD_OK);
+  int found = 0;
+  for (int k = 0; k < 5; k++) found |= 1 << order[k];
+  assert_int_equal(found, 31);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(near_points_stand_side_by_side),
+      cmocka_unit_test(any_points_are_sorted),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
