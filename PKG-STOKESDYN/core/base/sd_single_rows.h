@@ -100,27 +100,4 @@ INLINE void gather_eight(const real *rows, const int j[LANES], vec r[8])
 }
 #endif
 
-#if LANES == 16
-/* Sixteen rows one after the other, in an order of their own among the lanes: row_of_lane. Columns of rows
- * of eight become vectors; and rows of four += columns. */
-static const real row_of_lane[LANES] = {0, 2, 4, 6, 1, 3, 5, 7, 8, 10, 12, 14, 9, 11, 13, 15};
-
-INLINE void load_rows_of_eight(const real *rows, vec r[8])
-{
-  for (int k = 0; k < 8; k++) r[k] = load_any(rows + LANES * k);
-  columns_of_eight(r);
-}
-
-INLINE void add_to_rows_of_four(real *rows, vec column[4])
-{
-  transpose(column);
-  for (int k = 0; k < 4; k++)
-    for (int half = 0; half < 2; half++) {
-      real *two = rows + 8 * k + 32 * half;
-      const __m256 both = half ? _mm512_extractf32x8_ps(column[k], 1) : _mm512_castps512_ps256(column[k]);
-      _mm256_storeu_ps(two, _mm256_add_ps(_mm256_loadu_ps(two), both));
-    }
-}
-#endif
-
 #endif

@@ -45,8 +45,8 @@ typedef struct {
 
 /* The same where points stand in groups that each fit into a vector: group k has the rows first[k] ...
  * first[k + 1] - 1, and its pairs with groups are near[begin[k]] ... near[begin[k + 1] - 1], each pair once.
- * Of a pair, the number of the other group, which may be this one; and a bit for each point of this group
- * that may be within the range of one of the other. */
+ * Of a pair, the number of the other group, which may be this one; and a bit for each point of the other
+ * that may be within the range of one of this group. */
 typedef struct {
   int other;
   unsigned points;
@@ -60,7 +60,7 @@ typedef struct {
 } sd_near_groups;
 
 /* Degrees that there are kernels for: the polynomial is filled up with zeros. */
-#define SD_NEAR_DEGREES(_) _(6) _(8) _(11) _(14) _(17) _(20) _(24) _(29) _(39)
+#define SD_NEAR_DEGREES(_) _(6) _(7) _(8) _(11) _(14) _(17) _(20) _(24) _(29) _(39)
 
 /* The first of them that is enough */
 static inline int sd_near_degree(int least)

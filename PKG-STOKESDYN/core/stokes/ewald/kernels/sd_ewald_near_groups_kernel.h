@@ -1,31 +1,22 @@
-/* The kernel of the near part where points stand in groups, each of which fits into a vector: what a point
- * of one group does to all points of another, and they to it, at once. No list says which of these pairs
- * are within the range. Included by sd_ewald_kernels.c. */
+/* The kernel of the near part where points stand in groups: a group is the bunch, and those points of others that
+ * are near it are taken vector by vector, wherever they are. Nobody keeps a list of points: it is made of bits, a
+ * group at a time. Included by sd_ewald_kernels.c. */
 
 #if LANES >= 16
 
-/* The columns of a group's rows, without force in the lanes beyond its end; yes where it has points */
-INLINE yes_no load_group(const real *rows, int points, vec at[8])
-{
-  const yes_no there = load_any(row_of_lane) < all((real) points);
-  load_rows_of_eight(rows, at);
-  for (int c = 4; c < 7; c++) at[c] = where(there, at[c], all(0.0));
-  return there;
-}
-
-/* Groups may be anywhere in memory: the rows of one are fetched while those before it are at work. */
-INLINE void fetch_group(const real *rows, const real *sums, long row)
-{
-  for (int k = 0; k < 8 * SD_GROUP_POINTS; k += LANES) sd_fetch(rows + 8 * row + k);
-  for (int k = 0; k < 4 * SD_GROUP_POINTS; k += LANES) sd_fetch(sums + 4 * row + k);
-}
+/* A vector takes points of two groups or three. */
+enum { AHEAD_OF_GROUPS = 3 };
 
 /* The group itself: what its other points do to each */
-INLINE void near_within(int equal, int degree, const near_constants *all_pairs, const vec at[8],
-                        near_bunch *b)
+INLINE void near_within(int equal, int degree, const sd_near_part *p, const near_constants *all_pairs,
+                        int nowhere, near_bunch *b)
 {
+  int j[LANES];
+  vec at[8];
+  for (int q = 0; q < LANES; q++) j[q] = q < b->rows ? b->begin + q : nowhere;
+  gather_eight(p->row, j, at);
   for (int q = 0; q < b->rows; q++) {
-    const yes_no itself = load_any(row_of_lane) == all((real) q);
+    const yes_no itself = (vec) LANEWISE(NUMBER, 0) == all((real) q);
     const near_pairs m = near_radial(equal, 1, degree, all_pairs, b->row + q, at);
     vec F[3];
     for (int c = 0; c < 3; c++) F[c] = where(itself, all(0.0), at[4 + c]);
@@ -33,41 +24,53 @@ INLINE void near_within(int equal, int degree, const near_constants *all_pairs, 
   }
 }
 
-/* Another group: v is what it feels of the points that are near it. */
-INLINE void near_between(int equal, int degree, const near_constants *all_pairs, unsigned near,
-                         const vec at[8], near_bunch *b, vec v[3])
+/* The group and so many points of others */
+INLINE void near_between(int equal, int degree, const sd_near_part *p, const near_constants *all_pairs, const int *j,
+                         near_bunch *b)
 {
-  for (; near; near &= near - 1) {
-    const int q = __builtin_ctz(near);
-    const near_pairs m = near_radial(equal, 1, degree, all_pairs, b->row + q, at);
-    near_add(&m, at + 4, b->u[q]);
-    near_add_of(b->row + q, &m, v);
-  }
+  vec at[8], v[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
+  gather_eight(p->row, j, at);
+  near_bunch_add(equal, 0, degree, all_pairs, b, at, v);
+  add_to_rows(p->u, 4, j, v);
+}
+
+/* Groups may be anywhere in memory: the rows of one are fetched while those before it are at work. */
+INLINE void fetch_group(const sd_near_part *p, long row)
+{
+  const real *rows = p->row, *sums = p->u;
+  for (int k = 0; k < 8 * SD_GROUP_POINTS; k += LANES) sd_fetch(rows + 8 * row + k);
+  for (int k = 0; k < 4 * SD_GROUP_POINTS; k += LANES) sd_fetch(sums + 4 * row + k);
 }
 
 INLINE void near_group_forces(int equal, int degree, const sd_near_part *p, const sd_near_groups *g)
 {
-  const real *rows = p->row;
   near_polynomials shared;
   near_polynomials_of(p, &shared);
   const near_constants all_pairs = near_constants_of(p);
+  const int nowhere = g->first[g->groups];
   for (int k = 0; k < g->groups; k++) {
     near_bunch b;
+    int list[3 * LANES], many = 0;
     if (g->begin[k] == g->begin[k + 1]) continue;
     near_bunch_begin(equal, degree, p, &shared, g->first[k], g->first[k + 1] - g->first[k], &b);
     for (long e = g->begin[k]; e < g->begin[k + 1]; e++) {
-      const int other = g->near[e].other;
-      const long row = g->first[other];
-      vec at[8], v[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
-      const yes_no there = load_group(rows + 8 * row, g->first[other + 1] - (int) row, at);
-      if (e + 1 < g->begin[k + 1]) fetch_group(rows, p->u, g->first[g->near[e + 1].other]);
+      const int other = g->near[e].other, row = g->first[other];
+      const unsigned points = g->near[e].points;
+      if (e + AHEAD_OF_GROUPS < g->begin[k + 1]) fetch_group(p, g->first[g->near[e + AHEAD_OF_GROUPS].other]);
       if (other == k) {
-        near_within(equal, degree, &all_pairs, at, &b);
+        near_within(equal, degree, p, &all_pairs, nowhere, &b);
         continue;
       }
-      near_between(equal, degree, &all_pairs, g->near[e].points, at, &b, v);
-      for (int c = 0; c < 3; c++) v[c] = where(there, v[c], all(0.0));
-      add_to_rows_of_four((real *) p->u + 4 * row, v);
+      many += keep_next(list + many, row, points & 0xff);
+      many += keep_next(list + many, row + 8, points >> 8);
+      if (many < LANES) continue;
+      near_between(equal, degree, p, &all_pairs, list, &b);
+      many -= LANES;
+      memcpy(list, list + LANES, sizeof(int) * LANES);
+    }
+    if (many > 0) {
+      for (int l = many; l < LANES; l++) list[l] = nowhere;
+      near_between(equal, degree, p, &all_pairs, list, &b);
     }
     near_bunch_end(&b, p->u);
   }

@@ -179,7 +179,7 @@ static sd_status list_groups(finder *f, int row, int found)
   if (itself) g->pair[f->many++] = (sd_near_group){row, 0};
   for (int k = 0; k < found; k++) {
     if (ghost && is_ghost(f, g->near[k])) continue;
-    const unsigned points = group_points_near(f->pairs, row, g->near[k]);
+    const unsigned points = group_points_near(f->pairs, g->near[k], row);
     if (points) g->pair[f->many++] = (sd_near_group){g->near[k], points};
   }
   return SD_OK;
