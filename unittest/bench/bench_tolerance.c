@@ -3,12 +3,12 @@
  *   bench_tolerance SEED SCENES [MOST [LOOSEST TIGHTEST [KIND [PLACE]]]]
  * at most 1200 spheres; tolerances as numbers of digits; all kinds and places, or `any`, or one that is named below.
  * Volume fractions 0.001 to 0.6, tolerances 1e-2 to 1e-12, radii 1 : 1 to 1 : 100 (slabs 1 : 10), forces alone or with
- * torques. Forces are random and, in the column `equal`, all along x and as large as a^2. Compared with all pairs
- * where the box is open, else with a sum whose tolerance is a fiftieth. U: rms error of velocities over the rms of
- * F/(6 pi a); W: of spins over the rms of T/(8 pi a^3), both times a; flow: rms of velocities over that. In
- * shells of twelve points each point has a random force of its own. `of spheres`: all twelve have the same, U is the
- * mean of their velocities, F the sum of their forces and a = 1, and the sum over points is asked for
- * sd_multiblob_looser times the tolerance. */
+ * torques. Forces are random and, in the column `weights`, all along x (of a layer, which they would shear, across it)
+ * and as large as a^3. Compared with all pairs where the box is open, else with a sum whose tolerance is a fiftieth. U:
+ * rms error of velocities over the rms of F/(6 pi a); W: of spins over the rms of T/(8 pi a^3), both times a; flow: rms
+ * of velocities under weights over that. In shells of twelve points each point has a random force of its own. `of
+ * spheres`: all twelve have the same, U is the mean of their velocities, F the sum of their forces and a = 1, and the
+ * sum over points is asked for sd_multiblob_looser times the tolerance. */
 #include "../core/stokes/ewald/periodic.h"
 #include "../core/stokes/slab/slab.h"
 #include "plain.h"
@@ -83,7 +83,7 @@ static void draw_forces(scene *s, uint64_t *seed)
     const int d = i % s->width;
     const double a = s->a[i / s->width];
     s->F[0][i] = uniform(seed, -1, 1) * (d < 3 ? a : a * a);
-    s->F[1][i] = d == 0 ? a * a : 0.0;
+    s->F[1][i] = d == (s->place == LAYER ? 2 : 0) ? a * a * a : 0.0;
     s->F[2][i] = s->F[0][i - i / s->width % s->shell.n * s->width]; /* of the first point of its sphere */
   }
   if (s->place == LAYER) /* forces along it add up to 0 */
@@ -266,7 +266,7 @@ static void tell(int number, scene *s)
   }
   printf("%4d %-7s %-9s n %5d w %d ratio %6.2f phi %.4f tol %.1e %s levels %d | ", number, places[s->place],
          kinds[s->kind], s->n, s->width, s->ratio, s->phi, s->tolerance, s->floats ? "floats " : "doubles", s->levels);
-  printf("U %.3f W %.3f | equal %.3f flow %.3g", error[0][0], error[0][1], error[1][0], flow[1]);
+  printf("U %.3f W %.3f | weights %.3f flow %.3g", error[0][0], error[0][1], error[1][0], flow[1]);
   if (s->kind == SHELLS) printf(" | of spheres %.3f", error_of_spheres(s));
   printf("\n");
   fflush(stdout);

@@ -214,12 +214,14 @@ static void weights(const sd_ewald *e, int width, double *weight)
   weight[SD_K1] = equal ? 0.0 : a * R * b;
 }
 
-/* Of one pair, relative to I_0(0). Those of all neighbours add up as squares: there are up to 250 at 1e-3, and 800
- * where waves are Gaussians at the tightest tolerances. */
+/* Of one pair. Those of all neighbours add up as squares, to about three quarters of this times the root of their
+ * number; where spheres are dense and xi a is large, a part of I_0(0) alone would be too much of 1/(6 pi a). */
 static double polynomial_error(const sd_ewald *e)
 {
   const double neighbours = 4.0 / 3.0 * SD_PI * pow(e->range, 3.0) * e->count / sd_ewald_volume(&e->box);
-  return 0.1 * e->tolerance / sqrt(fmax(1.0, neighbours / 250.0));
+  double D[SD_RADIALS];
+  sd_radial(e, 0.0, D);
+  return e->tolerance * fmin(0.1 * D[SD_I0], 0.6 / (6.0 * SD_PI * e->a_ref * sqrt(fmax(1.0, neighbours))));
 }
 
 int sd_radial_fit(const sd_ewald *e, int width, double *coefficient)
@@ -233,8 +235,7 @@ int sd_radial_fit(const sd_ewald *e, int width, double *coefficient)
     for (int f = 0; f < SD_RADIALS; f++) sample[f][s] = D[f];
   }
   weights(e, width, weight);
-  sd_radial(e, 0.0, D);
-  const double most = polynomial_error(e) * D[SD_I0];
+  const double most = polynomial_error(e);
   int degree = 1;
   for (int f = 0; f < SD_RADIALS; f++) {
     sd_chebyshev_series(sample[f], NODES, series[f]);

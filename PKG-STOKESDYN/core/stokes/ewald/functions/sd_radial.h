@@ -71,7 +71,8 @@ void sd_radial(const sd_ewald *e, double r, double *value);
  *   width                                       3, or 6 with torques: which functions count
  *   coefficient [SD_RADIALS][SD_RADIAL_TERMS]   of 1, t, t^2 ...
  * Returns their degree: the smallest with which what the functions add to a velocity is right to a
- * tenth of the tolerance, relative to I_0(0), or less where neighbours are many. */
+ * tenth of the tolerance, relative to I_0(0), and what all neighbours add to half of it, relative to
+ * 1/(6 pi a). */
 int sd_radial_fit(const sd_ewald *e, int width, double *coefficient);
 
 /* What the near part leaves out beyond its range, summed over all directions and distances:

@@ -88,7 +88,7 @@ static void split(sd_ewald *e, const splitting *by, double *near)
     e->xi = y / e->range;
     if (k == 5) break;
     t = sd_splitting_tightened(by, e->tolerance, e->xi * y);
-    *near = fmin(t, sd_splitting_unlike(e, by, *near));
+    *near = fmin(t, sd_splitting_beyond(e, by, *near));
   }
   e->points = sd_splitting_points_of(by, e->tolerance, e->xi * y, t) + by->tall;
   e->beta = sd_splitting_beta(e, by) * e->points;
@@ -141,7 +141,7 @@ static void end_at_band(sd_ewald *e, const splitting *by, double near)
   e->range = fmax(shorter, least_range(e, by, y));
   for (int k = 0; k < 3; k++) {
     e->xi = y / e->range;
-    near = fmin(near, sd_splitting_unlike(e, by, near));
+    near = fmin(near, sd_splitting_beyond(e, by, near));
     y = sd_splitting_y(&e->box, by, near);
     e->range = fmax(shorter * (sd_splitting_band_spacings(&e->box, by, near) / spacings), least_range(e, by, y));
   }
@@ -151,11 +151,29 @@ static void end_at_band(sd_ewald *e, const splitting *by, double near)
   e->sized = 1;
 }
 
+/* Windows of unlike spheres are differentiated twice, for sources and for targets: what their ends mistake grows as the
+ * fourth power of how much finer than asked for a grid is: in small boxes, and across oblique ones. */
+static void widen_windows(sd_ewald *e, const splitting *by)
+{
+  double finest = e->spacing, k[3][3];
+  int fewest = e->grid[0];
+  sd_ewald_reciprocal(&e->box, k);
+  for (int d = 0; d < 3; d++) {
+    finest = fmin(finest, 2.0 * SD_PI / hypot(k[d][0], hypot(k[d][1], k[d][2])) / e->grid[d]);
+    fewest = e->grid[d] < fewest ? e->grid[d] : fewest;
+  }
+  const int more = e->points + (int) rint(4.0 * log10(e->spacing / finest)), room = fewest - 2;
+  const int most = room < SD_WINDOW_MOST_POINTS ? room : SD_WINDOW_MOST_POINTS;
+  e->points = more < most ? more : most;
+  e->beta = sd_splitting_beta(e, by) * e->points;
+}
+
 static sd_status level_of(sd_ewald *e, const splitting *by)
 {
   double near;
   split(e, by, &near);
   const sd_status status = sd_ewald_lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
+  if (status == SD_OK && by->fall == BAND && !by->equal && e->box.periodic) widen_windows(e, by);
   if (status == SD_OK && by->fall == BAND) end_at_band(e, by, near);
   return status;
 }
@@ -286,6 +304,7 @@ static sd_status level_in_slab(sd_ewald *e, splitting *by)
     split(e, by, &near);
   }
   const sd_status status = sd_ewald_lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
+  if (status == SD_OK && !by->equal) widen_windows(e, by);
   if (status == SD_OK) end_at_band(e, by, near);
   return status;
 }

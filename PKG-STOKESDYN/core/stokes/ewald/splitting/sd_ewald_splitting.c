@@ -36,44 +36,85 @@ double sd_splitting_tightened(const splitting *by, double tolerance, double xi_y
   return tolerance / fmax(1.0, loss) / loss_by_torques(by, tolerance, xi_y);
 }
 
-/* Rms of b of sd_radial.h over targets, times that over sources, which count as F^2 ~ a^2. For given means of a^2
- * and a^4 that of a^6 is largest with two sizes, one of them the largest. */
+/* Rms of b of sd_radial.h over targets, times b of the largest sphere and its radius over the rms of all. A source
+ * counts as F^2/a^2 in what errors are measured with: of all forces those are worst that act on the largest spheres
+ * alone, as weights nearly do where few are large. */
 static double rms_of_b(const splitting *by)
 {
   const sd_ewald_class *s = &by->spheres;
   const double most = s->largest * s->largest, ref = by->a_ref * by->a_ref;
   const double a2 = s->squares / s->count, a4 = s->fourths / s->count;
-  const double a6 = most * a4 - (most * a2 - a4) * (most * a2 - a4) / (most - a2);
-  const double targets = a4 - 2.0 * ref * a2 + ref * ref, sources = a6 - 2.0 * ref * a4 + ref * ref * a2;
-  return sqrt(fmax(0.0, targets) * fmax(0.0, sources) / a2) / 36.0;
+  const double targets = a4 - 2.0 * ref * a2 + ref * ref;
+  return sqrt(fmax(0.0, targets) * most / a2) * fabs(most - ref) / 36.0;
 }
 
-/* Part of the tolerance that unlike spheres may leave beyond the range; windows have the rest. */
-static const double UNLIKE = 0.62;
+/* Part of the tolerance that may be left beyond the range; windows have the rest. In a slab nothing makes up for the
+ * mean of what unlike spheres leave there (sd_columns.h knows that of equal ones), and weights add it up. */
+static const double BEYOND = 0.62, UNLIKE_IN_SLAB = 0.3;
 
-/* Where few spheres are large, few pairs of them are just beyond the range, and what these leave may be larger than
- * its rms over all places: the chance is small that it is larger by this. The fourth moment says how many there are,
- * if all are as large as the largest. */
+/* The share of spheres that are large, if those are as large as the largest: the fourth moment knows it. */
+static double share_of_large(const sd_ewald_class *s)
+{
+  return s->fourths / (s->count * pow(s->largest, 4.0));
+}
+
+/* Where few spheres are large, the pairs of them that are just beyond the range may be more than they are on average
+ * over all places, and what these leave is larger by this: by three deviations and one pair. */
 static double more_of_few(const sd_ewald *e, const splitting *by, double K)
 {
-  const double large = by->spheres.fourths / pow(by->spheres.largest, 4.0);
+  const double large = share_of_large(&by->spheres) * by->spheres.count;
   const double pairs = large * large * 2.0 * SD_PI * e->range * e->range / (K * sd_ewald_volume(&e->box));
-  return sqrt(1.0 + 2.0 / sqrt(pairs));
+  return sqrt(1.0 + 3.0 * sqrt(2.0 / pairs) + 2.0 / pairs);
 }
 
-/* b_i b_j (I_2 + J_2 hh) of sd_radial.h has k^4 more than I_0. At r = R the integral over k has its saddle at
- * imaginary waves of the order of K^2 R, not K, so that this part is larger by (K^2 R)^4 b_i b_j; and in H what x
- * gives there a_ref^2 k^2/3 takes away. Its rms over targets and sources of number density 1 beyond the range is
- *   sqrt(R) 3e-4 K^4 (KR - 3)^4 KR exp(-KR) (1 - (K a_ref)^2/23) times the rms of b,
- * the numbers found by integration for KR from 11 to 40. */
-double sd_splitting_unlike(const sd_ewald *e, const splitting *by, double t)
+/* What I_0 1 + J_0 hh of sd_radial.h leave beyond the range r = R, over targets and sources of number density 1: the
+ * rms over places is sqrt(R) times this. In H what x gives at the saddle of the integral over k a_ref^2 k^2/3 takes
+ * away, and where spheres are so dense that K a_ref is beyond 3.5, more than that. Numbers found by integration for KR
+ * from 8 to 40. */
+static double beyond_of_alike(double KR, double Ka)
 {
-  if (by->fall != BAND || by->equal) return t;
-  const double KR = 2.0 * pow(e->xi * e->range, 2.0), K = KR / e->range;
-  const double bend = hypot(0.2, 1.0 - pow(K * e->a_ref, 2.0) / 23.0);
-  const double beyond = 3e-4 * pow(K * (KR - 3.0), 4.0) * KR * exp(-KR) * bend * rms_of_b(by);
-  const double n = e->count / sd_ewald_volume(&e->box), rms = sqrt(by->spheres.squares / by->spheres.count);
-  return t * UNLIKE / more_of_few(e, by, K) * e->tolerance / (6.0 * SD_PI * rms * sqrt(n * e->range) * beyond);
+  return (0.196 + 0.0101 * KR) * hypot(0.25, 1.0 - Ka * Ka / (7.5 + 0.12 * KR)) * KR * exp(-KR);
+}
+
+/* b_i b_j (I_2 + J_2 hh) has k^4 more than I_0. At r = R the saddle is at imaginary waves of the order of K^2 R, not K,
+ * so that this part is larger by (K^2 R)^4 b_i b_j. As above it is sqrt(R) times
+ *   3e-4 K^4 (KR - 3)^4 KR exp(-KR) (1 - (K a_ref)^2/23) times the rms of b,
+ * the numbers found by integration for KR from 11 to 40. */
+static double beyond_of_unlike(double KR, double K, double Ka)
+{
+  return 3e-4 * pow(K * (KR - 3.0), 4.0) * KR * exp(-KR) * hypot(0.2, 1.0 - Ka * Ka / 23.0);
+}
+
+/* A large sphere in a small box sees images of its own just beyond the range, where chance has nothing to do with it:
+ * what one of them leaves is the above times sqrt(K/(2 pi R)), and falls as exp(-K r). Their sum, over that. */
+static double of_own_images(const sd_ewald_box *box, double R, double K)
+{
+  const double *L = box->edge, *tilt = box->tilt;
+  const int most = 1 + (int) fmin(3.0, R / sd_ewald_narrowest(box)), each = 2 * most + 1;
+  double sum = 0.0;
+  for (int m = 0; m < each * each * each && box->periodic; m++) {
+    const int i = m % each - most, j = m / each % each - most, k = m / (each * each) - most;
+    const double r = hypot(i * L[0] + j * tilt[0] + k * tilt[1], hypot(j * L[1] + k * tilt[2], k * L[2]));
+    if (r > R) sum += exp(-K * (r - R));
+  }
+  return sum * sqrt(K / (2.0 * SD_PI * R));
+}
+
+double sd_splitting_beyond(const sd_ewald *e, const splitting *by, double t)
+{
+  if (by->fall != BAND) return t;
+  const double KR = 2.0 * pow(e->xi * e->range, 2.0), K = KR / e->range, Ka = K * e->a_ref;
+  const double rms = sqrt(by->spheres.squares / by->spheres.count), n = e->count / sd_ewald_volume(&e->box);
+  const double unit = 6.0 * SD_PI / (BEYOND * e->tolerance), all = rms * sqrt(n * e->range);
+  double most = unit * all * beyond_of_alike(KR, Ka);
+  if (!by->equal) {
+    const double a = e->largest, b = (a * a - e->a_ref * e->a_ref) / 6.0;
+    const double part = by->farthest > 0.0 ? UNLIKE_IN_SLAB : 1.0;
+    const double alone = a * b * b * of_own_images(&e->box, e->range, K);
+    const double weighed = fmax(alone, all * rms_of_b(by) * more_of_few(e, by, K));
+    most = fmax(most, unit / part * beyond_of_unlike(KR, K, Ka) * weighed);
+  }
+  return t / most;
 }
 
 double sd_splitting_gaussian_y(const sd_ewald_box *box, double t)
@@ -136,7 +177,8 @@ int sd_splitting_points(double t)
 }
 
 /* A point takes a digit from what windows mistake, and a little less with the beta of unlike spheres and of images,
- * whose heights multiply it. Not all that torques lose is the windows' fault. */
+ * whose heights multiply it. Where few spheres are large and bear all the force, errors are not what the mean over all
+ * spheres says. Not all that torques lose is the windows' fault. */
 int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, double t)
 {
   if (equal_turn(by)) {
@@ -146,7 +188,9 @@ int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, d
   if (by->five) return FEW_POINTS;
   const double slower = by->fall == BAND && !by->equal ? 0.06 * fmax(0.0, log10(1.0 / tolerance) - 5.0) : 0.0;
   const double heights = by->at_wall ? 0.9 * fmax(0.0, log10(1.0 / t) - 7.9) : 0.0;
-  return whole_points(2.0 + log10(1.0 / t) + slower + heights);
+  const double few = by->fall == BAND && !by->equal ? 0.25 * log10(1.0 / share_of_large(&by->spheres)) : 0.0;
+  const double large = by->fall == BAND ? log10(fmax(1.0, largest_wave(by, xi_y) / 8.0)) : 0.0;
+  return whole_points(2.0 + log10(1.0 / t) + slower + heights + few + large);
 }
 
 /* Of the window over its points: where it is differentiated its jump at the ends must be smaller; twice for
@@ -170,7 +214,8 @@ int sd_splitting_five_may_do(const sd_ewald *e, const splitting *by)
   const sd_ewald_box *b = &e->box;
   const int upright = b->periodic && b->tilt[0] == 0.0 && b->tilt[1] == 0.0 && b->tilt[2] == 0.0;
   const int plain = upright && e->positive == 0.0 && by->fall == BAND;
-  return plain && !by->equal && by->width == 3 && e->points == FEW_POINTS + 1;
+  const int many_large = share_of_large(&by->spheres) > 0.1;
+  return plain && many_large && !by->equal && by->width == 3 && e->points == FEW_POINTS + 1;
 }
 
 int sd_splitting_five_do(const sd_ewald *e)

@@ -34,9 +34,9 @@ typedef struct {
  * below take t. */
 double sd_splitting_tightened(const splitting *by, double tolerance, double xi_y);
 
-/* The t with which y and spacing keep what is left of unlike spheres beyond the range below the tolerance; t:
- * what xi and the range are from. Equal spheres and Gaussians leave no more than is asked for: t */
-double sd_splitting_unlike(const sd_ewald *e, const splitting *by, double t);
+/* The t with which y and spacing keep what is left beyond the range below the tolerance, whichever spheres
+ * bear the forces; t: what xi and the range are from. Gaussians leave no more than is asked for: t */
+double sd_splitting_beyond(const sd_ewald *e, const splitting *by, double t);
 
 /* y; that of a Gaussian, whose near part falls as exp(-y^2) */
 double sd_splitting_y(const sd_ewald_box *box, const splitting *by, double t);
