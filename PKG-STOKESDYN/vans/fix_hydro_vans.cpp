@@ -120,6 +120,7 @@ void FixHydroVans::init()
   if (set.solves()) tell_steps();
   if (set.couple == VansSettings::TWO) tell_sizes();
   tell_roughness();
+  tell_smooth();
   check_others();
   look_at_neighbours();
   tell_fall();

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 using namespace LAMMPS_NS;
@@ -95,6 +96,26 @@ void FixHydroVans::tell_roughness()
   told_roughness = true;
   set.voice.tell(std::string("turbulence ") + name + ": a bed of fixed grains is about as rough as k_s = " +
                  text(rough) + " grain diameters; flumes have 1 to 2");
+}
+
+/* Without `sublayer yes` these laws rub on a smooth bottom as if it had grains (page vans_stream). */
+void FixHydroVans::tell_smooth()
+{
+  static const std::map<sd_vans_turbulence, const char *> NAMES = {{SD_VANS_KZ, "kz"},
+                                                                   {SD_VANS_PARABOLIC, "parabolic"},
+                                                                   {SD_VANS_LI_SAWAMOTO, "li_sawamoto"},
+                                                                   {SD_VANS_NI_CAPART, "ni_capart"}};
+  const auto law = NAMES.find(set.fluid.turbulence);
+  if (told_smooth || !set.solves() || set.fluid.sublayer || set.yade() || law == NAMES.end()) return;
+  const double *phi = stream.phi();
+  bigint mine = std::any_of(phi, phi + stream.ncell(), [](double part) { return part > 0.0; }), all;
+  if (set.has_grains())
+    for (int i = 0; i < atom->nlocal; i++) mine += (atom->mask[i] & average_bit) != 0;
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all > 0) return;
+  told_smooth = true;
+  set.voice.warn(std::string("keyword turbulence: there are no grains, and with ") + law->second +
+                 " a smooth bottom rubs as if it had grains of 75 nu/u_star: use sublayer yes, or turbulence rousseau");
 }
 
 /* What a coupling does, where it is not what the keywords seem to say, or takes seconds. */

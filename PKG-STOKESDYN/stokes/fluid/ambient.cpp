@@ -103,6 +103,7 @@ void Ambient::read_fluid(Derivatives derivatives)
   const bool u_varies = varies(), with_gradients = derivatives >= FIRST;
   if (!numbers_only()) modify->clearstep_compute();
   motion = u_varies ? motion_of_box(voice, later) : BoxMotion();
+  if (settings.box && !told_volume) told_volume = warn_of_volume(voice, motion);
 
   eta.resize(settings.visc.is_atom_style() || settings.grid_has_visc ? n + 1 : 0);
   settings.visc.evaluate(lmp, igroup, eta.empty() ? nullptr : eta.data(), 1);

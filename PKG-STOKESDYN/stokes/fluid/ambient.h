@@ -174,6 +174,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
   bool jumping = false;
   double now = 0.0, later = 0.0, eta_uniform = 0.0, u_uniform[3] = {0.0, 0.0, 0.0};
   BoxMotion motion;
+  bool told_volume = false;
   /* per atom, or empty. w: half the vorticity */
   std::vector<double> eta, u, w, gradient, curvature;
   /* of look_ahead(): by how much values() have changed, or empty */

@@ -167,6 +167,18 @@ void check_deform(const Voice &voice, bool inertia, bool moving, bool clumps)
               "fluid moves with the box (keyword fluid_velocity): use remap v");
 }
 
+bool warn_of_volume(const Voice &voice, const BoxMotion &flow)
+{
+  const double *G = flow.gradient, grows = G[0] + G[4] + G[8];
+  double largest = 0.0;
+  for (int k = 0; k < 9; k++) largest = std::max(largest, fabs(G[k]));
+  if (!(fabs(grows) > 1e-9 * largest)) return false;
+  voice.at_step().warn("keyword fluid_velocity: " + name_of(deform_of(voice.lmp)) +
+                       " changes the volume of the box, by " + text(grows) + " of it per time, and the fluid, which "
+                       "cannot be compressed, is to follow: let the volume stand, as with x trate R y volume z volume");
+  return true;
+}
+
 void check_images(const Voice &voice, const double *jump)
 {
   if (!jump) return;

@@ -43,6 +43,10 @@ BoxMotion motion_of_box(const Voice &voice, double later = 0.0);
 void check_deform(const Voice &voice, bool inertia, bool moving,
                   bool clumps);
 
+/* The fluid cannot be compressed. A warning, if it is to follow a box whose volume changes by more than
+ * rounding. Was it given? */
+bool warn_of_volume(const Voice &voice, const BoxMotion &flow);
+
 /* Fixes that go on with the velocity of an atom when it crosses a face of the box: fix move, and fix
  * rigid*, whose atoms all have the velocity that belongs to one image of the body. So no atom of theirs
  * may be in another image along an edge whose images move with the fluid. jump: that of

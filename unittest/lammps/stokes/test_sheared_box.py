@@ -50,6 +50,25 @@ def test_the_fluid_goes_with_the_box(simulation, style):
     assert np.abs(spin - half_curl).max() < 1e-6 * np.abs(G).max()
 
 
+# whether the volume changes; two opposite erate keep it in the first step alone
+VOLUMES = {"extension": True, "trate": True, "shear": False, "volume of one": False, "volume of two": False,
+           "two by volume": False}
+MORE = {"opposite rates": ("x erate 0.4 y erate -0.4", True),
+        "opposite true rates": ("x trate 0.4 y trate -0.4", False)}
+
+
+@pytest.mark.parametrize("style, changes", [(STYLES[name], changes) for name, changes in VOLUMES.items()] +
+                         list(MORE.values()), ids=[*VOLUMES, *MORE])
+def test_a_fluid_that_follows_a_volume_that_changes_is_told_once(simulation, tmp_path, style, changes):
+    log = tmp_path / "log"
+    sim = simulation(cloud(), "clumps_only yes visc 1.3 fluid_velocity box", fix=False, box=BOX, log=log,
+                     tilt=(0.5, -0.4, 0.6), boundary="p p p", dt=1e-3, comm="comm_modify vel yes")
+    sim.commands(f"{FIX}\nfix d all deform 1 {style} remap v units box").run(300).run(3)
+    sim.close()
+    said = log.read_text().count("keyword fluid_velocity: fix d of style deform changes the volume of the box, by ")
+    assert said == changes
+
+
 def cloud():
     """Three spheres; each is pulled another way, through all faces"""
     return Spheres([(0, 3, 0), (5.5, 5.5, 3.3), (2.0, 9.0, -3.0)], [1.0, 0.6, 0.8])

@@ -3,7 +3,7 @@ a bed, hops, grains that stick."""
 import numpy as np
 import pytest
 # close_scenes is a fixture
-from vans_helper import Scene, bed_script, close_scenes, run_lmp  # noqa: F401
+from vans_helper import Scene, bed_script, close_scenes, run_lmp, write_columns  # noqa: F401
 
 
 def falls(x, d, density, water, drag, box, steps, dt):
@@ -209,6 +209,34 @@ def test_the_log_says_how_rough_the_bed_is(tmp_path, words, said):
                    "run 0\nrun 0\n")
     assert done.returncode == 0 and done.stdout.count("grain diameters; flumes have 1 to 2") == (said is not None)
     assert said is None or said in done.stdout
+    assert "a smooth bottom" not in done.stdout    # there are grains
+
+
+@pytest.mark.parametrize("words, law", [
+    ("couple fluid turbulence kz", "kz"), ("couple fluid turbulence parabolic", "parabolic"), ("", "li_sawamoto"),
+    ("couple fluid turbulence ni_capart", "ni_capart"), ("couple fluid sublayer yes", None),
+    ("couple fluid turbulence rousseau", None), ("couple fluid turbulence none", None),
+    ("couple fluid rules yade", None), ("couple one", None), ("couple fluid radius 0.01 given file phi", None)])
+def test_a_smooth_bottom_that_rubs_as_if_it_had_grains_is_told_once(tmp_path, words, law):
+    """With couple two there may be grains, but there are none; with couple fluid they may be given."""
+    write_columns(tmp_path / "phi", 0.5 * (np.arange(20) < 3), np.zeros(20), np.zeros(20))
+    done = run_lmp(tmp_path, f"""
+plugin load stokesdynplugin.so
+units si
+atom_style sphere
+comm_modify vel yes
+boundary p p f
+region box block 0 1 0 1 0 1
+create_box 1 box
+pair_style zero 0.1
+pair_coeff * *
+fix vans all hydro/vans 10 mesh 20 0.05 0 fluid 1000 0.001 gravity 0.01 0 -9.81 solve 1 0.1 {words}
+run 0
+run 0
+""")
+    assert done.returncode == 0, done.stdout[-2000:]
+    assert done.stdout.count("a smooth bottom rubs as if it had grains of 75 nu/u_star") == (law is not None)
+    assert law is None or f"keyword turbulence: there are no grains, and with {law} a" in done.stdout
 
 
 STICK = """
