@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
+#include <utility>
 
 using namespace LAMMPS_NS;
 
@@ -135,13 +136,14 @@ bool is_number(const std::string &word, double &value)
 
 Keywords::Keywords(LAMMPS *lmp, const std::string &command, const std::vector<std::string> &args,
                    size_t begin) :
-    Voice(lmp, command), args(args), at(begin)
+    Voice(lmp, command), args(args), at(begin), first(begin)
 {
 }
 
 Keywords &Keywords::positional(const std::string &name)
 {
   key = name;
+  first = at;
   return *this;
 }
 
@@ -173,6 +175,7 @@ bool Keywords::next()
 {
   if (!more()) return false;
   key = args[at++];
+  first = at;
   if (given(key)) refuse("given twice");
   seen.push_back(key);
   return true;
@@ -185,9 +188,19 @@ bool Keywords::take(const std::string &option)
   return true;
 }
 
+Keywords &Keywords::value(const std::string &name)
+{
+  next_value = name;
+  return *this;
+}
+
 std::string Keywords::word()
 {
-  if (at >= args.size()) refuse("value missing");
+  const std::string name = std::exchange(next_value, "");
+  if (at >= args.size()) {
+    const std::string which = !name.empty() ? ": " + name : at > first ? " after '" + args[at - 1] + "'" : "";
+    refuse("value missing" + which);
+  }
   if (args[at].empty()) refuse("'' is empty");
   return args[at++];
 }

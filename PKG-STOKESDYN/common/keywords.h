@@ -84,6 +84,9 @@ class Keywords : private Voice {
   /* "<command>: keyword <key>" */
   std::string present() const { return command + ": keyword " + key; }
 
+  /* What the next value is, in the words of the style's page: an error that it is missing says so,
+   *   temperature = in.value("T").positive(), seed = in.value("seed").integer(1); */
+  Keywords &value(const std::string &name);
   /* The values of the present keyword, one call each. */
   std::string word();
   double number();    // finite
@@ -116,10 +119,10 @@ class Keywords : private Voice {
   [[noreturn]] void refuse(const std::string &why) const;
 
  private:
-  std::string key;
+  std::string key, next_value;
   std::vector<std::string> args, seen;
   std::vector<std::pair<std::string, std::string>> others;
-  size_t at;
+  size_t at, first;    // the next word; the first of the present argument
 };
 
 /* Words of a LAMMPS command as strings. */

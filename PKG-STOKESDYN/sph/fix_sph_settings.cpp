@@ -12,12 +12,12 @@ FixSphPressure::FixSphPressure(LAMMPS *lmp, int narg, char **arg) :
   if (!in.next()) voice.fail("the equation of state is missing: absolut, relativ or Tait");
   if (in.is("absolut")) {
     state.kind = SD_SPH_ABSOLUT;
-    state.B = in.positive();
+    state.B = in.value("B").positive();
   } else if (in.is("relativ") || in.is("Tait")) {
     state.kind = in.is("Tait") ? SD_SPH_TAIT : SD_SPH_RELATIV;
-    state.B = in.positive();
-    state.rho0 = in.positive();
-    if (state.kind == SD_SPH_TAIT) state.gamma = in.positive();
+    state.B = in.value("B").positive();
+    state.rho0 = in.value("rho0").positive();
+    if (state.kind == SD_SPH_TAIT) state.gamma = in.value("gamma").positive();
     if (in.more() && in.peek() != "tension") state.P0 = in.number();
   } else
     in.unknown({"absolut", "relativ", "Tait"});

@@ -43,20 +43,20 @@ FixWallSph::FixWallSph(LAMMPS *lmp, int narg, char **arg) : FixRepulsiveWall(lmp
   Keywords in = keywords(narg, arg);
   if (!in.next()) voice.fail("the wall is missing: xplane, yplane, zplane or zcylinder");
   if (in.is("zcylinder"))
-    radius = in.positive();
+    radius = in.value("R").positive();
   else if (in.is("xplane") || in.is("yplane") || in.is("zplane")) {
     axis = in.is("xplane") ? 0 : in.is("yplane") ? 1 : 2;
     for (int side = 0; side < 2; side++) {
       has[side] = !in.take("NULL");
-      if (has[side]) at[side] = in.number();
+      if (has[side]) at[side] = in.value(side ? "hi" : "lo").number();
     }
     if (!has[0] && !has[1]) in.refuse("both walls are NULL");
     if (has[0] && has[1] && !(at[0] < at[1]))
       in.refuse("lo " + text(at[0]) + " must be smaller than hi " + text(at[1]));
   } else
     in.unknown({"xplane", "yplane", "zplane", "zcylinder"});
-  r0 = in.positive();
-  D = in.not_negative();
+  r0 = in.value("r0").positive();
+  D = in.value("D").not_negative();
   in.parse({});
 }
 
@@ -110,8 +110,8 @@ FixWallRegionSph::FixWallRegionSph(LAMMPS *lmp, int narg, char **arg) :
   if (!Compat::region(domain, region_id)) voice.fail("region '" + region_id + "' does not exist");
   Keywords in = keywords(narg, arg);
   in.next();
-  r0 = in.positive();
-  D = in.not_negative();
+  r0 = in.value("r0").positive();
+  D = in.value("D").not_negative();
   in.parse({});
 }
 

@@ -47,20 +47,20 @@ void SphCoefficients::parse()
   else
     voice.fail("unknown kernel '" + args[0] +
                "': it must be one of cubicspline, wendland, cubicspline2d, wendland2d");
-  defaults[H] = in.positive();
+  defaults[H] = in.value("h").positive();
   in.parse({
       {"artVisc",
        [&] {
          model.artvisc = 1;
-         defaults[ALPHA] = in.not_negative();
-         defaults[BETA] = in.not_negative();
-         model.eta = in.not_negative();
+         defaults[ALPHA] = in.value("alpha").not_negative();
+         defaults[BETA] = in.value("beta").not_negative();
+         model.eta = in.value("eta").not_negative();
        }},
       {"tensCorr",
        [&] {
          model.tenscorr = 1;
-         model.epsilon = in.not_negative();
-         defaults[DELTAP] = in.positive();
+         model.epsilon = in.value("epsilon").not_negative();
+         defaults[DELTAP] = in.value("deltap").positive();
        }},
       {"viscosity",
        [&] {
@@ -99,7 +99,7 @@ void SphCoefficients::read_law(Keywords &in)
   defaults[TAU] = kind == BINGHAM || kind == HERSCHEL_BULKLEY ? in.not_negative() : 0.0;
   defaults[LAMBDA] = kind == CARREAU ? in.positive() : 1.0;
   defaults[N] = kind == BINGHAM ? 1.0 : in.positive();
-  defaults[MU_MAX] = in.positive();
+  defaults[MU_MAX] = in.value("mumax").positive();
 }
 
 // --- pair_coeff ---------------------------------------------------------------------------------

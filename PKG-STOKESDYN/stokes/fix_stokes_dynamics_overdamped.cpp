@@ -44,10 +44,10 @@ FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, 
        }},
       {"adapt",
        [&] {
-         adapt.every = in.integer(1);
-         adapt.tmin = in.positive();
-         adapt.tmax = in.positive();
-         adapt.xmax = in.positive();
+         adapt.every = in.value("N").integer(1);
+         adapt.tmin = in.value("tmin").positive();
+         adapt.tmax = in.value("tmax").positive();
+         adapt.xmax = in.value("xmax").positive();
          if (adapt.tmin > adapt.tmax)
            in.refuse("tmin '" + text(adapt.tmin) + "' must not be above tmax '" +
                      text(adapt.tmax) + "'");

@@ -157,7 +157,7 @@ int FixHydroVans::modify_param(int narg, char **arg)
     average();
     stream.profile_changed();
   } else if (key == "solve") {
-    const double T = in.positive(), dt = in.positive();
+    const double T = in.value("period").positive(), dt = in.value("dt").positive();
     set.check_solve(what, T, dt);
     find_names();
     read_variables();

@@ -99,9 +99,9 @@ void VansSettings::take_mesh(Keywords &in)
     mesh_file = file_name(in);
     return;
   }
-  edge.resize(in.integer(2, 10000000) + 1);
-  mesh.dz = in.positive();
-  mesh.z_ref = in.number();
+  edge.resize(in.value("ncell").integer(2, 10000000) + 1);
+  mesh.dz = in.value("dz").positive();
+  mesh.z_ref = in.value("zref").number();
   for (size_t k = 0; k < edge.size(); k++) edge[k] = (double) k * mesh.dz;
 }
 
@@ -140,9 +140,9 @@ void VansSettings::take_fluctuation(Keywords &in)
   fluctuation = in.option<decltype(fluctuation)>(
       {"none", "correlated", "uncorrelated", "depth", "langevin"});
   if (!fluctuates()) return;
-  seed = (uint64_t) in.integer(1, std::numeric_limits<bigint>::max());
+  seed = (uint64_t) in.value("seed").integer(1, std::numeric_limits<bigint>::max());
   find_bed = in.take("auto");
-  if (!find_bed) bed = in.number();
+  if (!find_bed) bed = in.value("bed").number();
 }
 
 void VansSettings::take_intensity(Keywords &in)
@@ -158,8 +158,8 @@ void VansSettings::take_intensity(Keywords &in)
 
 void VansSettings::take_fluid(Keywords &in)
 {
-  fluid.rho = law.rho = in.positive();
-  fluid.eta = law.eta = in.positive();
+  fluid.rho = law.rho = in.value("rho").positive();
+  fluid.eta = law.eta = in.value("eta").positive();
 }
 
 void VansSettings::take_gravity(Keywords &in)
@@ -198,8 +198,8 @@ void VansSettings::take_surface(Keywords &in)
 void VansSettings::take_sidewall(Keywords &in)
 {
   if (in.take("off")) return;
-  fluid.width = in.positive();
-  fluid.wall_coef = in.not_negative();
+  fluid.width = in.value("width").positive();
+  fluid.wall_coef = in.value("coef").not_negative();
 }
 
 void VansSettings::read(Keywords &in)
@@ -213,7 +213,7 @@ void VansSettings::read(Keywords &in)
       {"profile", [&] { profile_file = file_or(in, "zero"); }},
       {"given", [&] { given_file = file_or(in, "averaged"); }},
       {"convective", [&] { convective_file = file_or(in, "off"); }},
-      {"solve", [&] { period = in.positive(), dt = in.positive(); }},
+      {"solve", [&] { period = in.value("period").positive(), dt = in.value("dt").positive(); }},
       {"stream", [&] { law.rest = in.choice({"steady", "rest"}) == 1; }},
       {"drag", [&] { take_drag(in); }},
       {"fall_diameter", [&] { law.drag.fall = in.positive(); }},

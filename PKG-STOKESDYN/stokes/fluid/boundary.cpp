@@ -42,7 +42,7 @@ void Boundary::read_wall(Keywords &in)
     const size_t side = in.choice(SIDES);
     wall[walls] = {(int) side / 2, side % 2 ? -1 : 1, 0.0};
     at_edge[walls] = in.take("EDGE");
-    if (!at_edge[walls]) wall[walls].at = in.number();
+    if (!at_edge[walls]) wall[walls].at = in.value("POSITION").number();
     walls++;
   }
   if (walls == 1) return;

@@ -15,8 +15,8 @@ namespace StokesDyn {
 
 void Drives::read(Keywords &in)
 {
-  if (in.is("held")) held.name = in.word();
-  if (in.is("pin")) pinned.name = in.word();
+  if (in.is("held")) held.name = in.value("GROUP").word();
+  if (in.is("pin")) pinned.name = in.value("GROUP").word();
   if (in.is("spin")) spin.read(in);
   if (in.is("torque")) torques.read(in);
   if (in.is("squirm")) squirmers.read(in);

@@ -22,9 +22,9 @@ namespace StokesDyn {
 
 void Noise::read_temperature(Keywords &in)
 {
-  temperature = Field::parse(in, Field::ONE_FOR_ALL);
+  temperature = Field::parse(in.value("T"), Field::ONE_FOR_ALL);
   in.check(temperature.number() >= 0.0, "must be >= 0");
-  seed = (uint32_t) in.integer(1);
+  seed = (uint32_t) in.value("seed").integer(1);
 }
 
 void Noise::read_tolerance(Keywords &in)

@@ -17,7 +17,7 @@ namespace StokesDyn {
 void Spin::read(Keywords &in)
 {
   double unused;
-  whom.name = in.word();
+  whom.name = in.value("GROUP").word();
   for (double &component : omega) component = in.number();
   if (in.more() && is_number(in.peek(), unused)) most = in.positive();
   std::copy_n(omega, 3, axis);

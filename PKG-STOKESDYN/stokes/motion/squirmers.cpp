@@ -15,9 +15,9 @@ namespace StokesDyn {
 void Squirmers::read(Keywords &in)
 {
   double unused;
-  whom.name = in.word();
-  B1 = Field::parse(in);
-  B2 = Field::parse(in);
+  whom.name = in.value("GROUP").word();
+  B1 = Field::parse(in.value("B1"));
+  B2 = Field::parse(in.value("B2"));
   if (in.more() && (is_number(in.peek(), unused) || in.peek().compare(0, 2, "v_") == 0))
     beta = Field::parse(in);
 }

@@ -19,7 +19,7 @@ namespace StokesDyn {
 
 void Torques::read(Keywords &in)
 {
-  whom.name = in.word();
+  whom.name = in.value("GROUP").word();
   for (Field &component : T) component = Field::parse(in);
   if (in.take("body")) of_body = in.yes_no();
 }

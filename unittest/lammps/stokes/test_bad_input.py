@@ -61,7 +61,7 @@ AT_THE_COMMAND = [
     ("cut_off_distance inf visc 1.3 2.0", ["unknown keyword '2.0'"]),
     ('cut_off_distance inf visc 1.3 region ""', ["keyword region: '' is empty"]),
     ('cut_off_distance inf visc 1.3 group ""', ["keyword group: '' is empty"]),
-    ("cut_off_distance inf visc 1.3 fluid_velocity 1 2", ["keyword fluid_velocity: value missing"]),
+    ("cut_off_distance inf visc 1.3 fluid_velocity 1 2", ["keyword fluid_velocity: value missing after '2'"]),
     ("cut_off_distance inf visc 1.3 fluid_velocity 1 nan 3", ["keyword fluid_velocity: 'nan' is not a finite number"]),
     ("cut_off_distance inf visc 1.3 fluid_velocity 1 up 3", ["keyword fluid_velocity: 'up' is not a number"]),
 ]

@@ -83,7 +83,11 @@ def test_it_cannot_be_minimised(simulation):
     ("adapt 0 1 2 3", "keyword adapt: '0' must be >= 1"),
     ("adapt 1 -1 2 3", "keyword adapt: '-1' must be > 0"),
     ("adapt 1 2 1 3", "keyword adapt: tmin '2' must not be above tmax '1'"),
-    ("adapt 1 2 3", "keyword adapt"),
+    ("adapt 1 2 3", "keyword adapt: value missing: xmax"),
+    ("temperature", "keyword temperature: value missing: T"),
+    ("temperature 1", "keyword temperature: value missing: seed"),
+    ("temperature v_T", "keyword temperature: value missing: seed"),
+    ("spin all 0 1", "keyword spin: value missing after '1'"),
     ("adapt 1 1 2 nan", "keyword adapt: 'nan'"),
     ("rigid yes", "unknown keyword 'rigid'; those that there are: scheme, adapt, held, pin, spin, squirm, torque, "
                   "temperature, noise_tolerance"),

@@ -101,7 +101,7 @@ write_dump all custom dump.{n} id x y z vx vy vz f_vans[1] f_vans[2] f_vans[3] m
 
 BAD = [
     ("average", "none", "keyword average: couple none and fluid have no averages"),
-    ("solve 1e-3", "two", "keyword solve: value missing"),
+    ("solve 1e-3", "two", "keyword solve: value missing: dt"),
     ("solve 0 1e-3", "two", "keyword solve: '0' must be > 0"),
     ("solve 1e-3 1e-2", "two", "keyword solve: the step 0.01 is longer than the period 0.001"),
     ("solve 1 1e-12", "two", "keyword solve: the step 1e-12 is too short"),

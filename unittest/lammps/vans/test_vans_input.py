@@ -59,7 +59,7 @@ BAD = [
     (dict(fluctuation="depth 99999999999999999999 0"),
      "keyword fluctuation: '99999999999999999999' must be <= 9223372036854775807"),
     (dict(fluctuation="depth -99999999999999999999 0"), "keyword fluctuation: '-99999999999999999999' must be >= 1"),
-    (dict(fluctuation="correlated 5"), "keyword fluctuation: value missing"),
+    (dict(fluctuation="correlated 5"), "keyword fluctuation: value missing: bed"),
     (dict(profile="file nowhere"), "keyword profile: cannot read file 'nowhere'"),
     (dict(region="nowhere"), "keyword region: region 'nowhere' does not exist"),
     (dict(average="nobody"), "keyword average: group 'nobody' does not exist"),
