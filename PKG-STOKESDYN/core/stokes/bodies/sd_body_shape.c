@@ -102,11 +102,24 @@ static sd_status shape_invert(size_t N, double *A)
   return status == SD_OK ? sd_cholesky_inverse((int) N, A) : status;
 }
 
+/* One sphere that turns, about its own centre: K = I, and M is the mobility of the body. */
+static int is_its_sphere(const sd_body_shape *s)
+{
+  return s->m == 1 && s->width == 6 && s->x[0] == 0.0 && s->x[1] == 0.0 && s->x[2] == 0.0;
+}
+
 /* inverse, rigid, mobility and resistance from M, which `inverse` holds on entry */
 static sd_status complete(sd_body_shape *s)
 {
+  const int its_sphere = is_its_sphere(s);
+  if (its_sphere) memcpy(s->mobility, s->inverse, sizeof s->mobility);
   const sd_status status = shape_invert((size_t) s->width * (size_t) s->m, s->inverse);
   if (status != SD_OK) return status;
+  if (its_sphere) {
+    memcpy(s->rigid, s->inverse, sizeof s->resistance);
+    memcpy(s->resistance, s->inverse, sizeof s->resistance);
+    return SD_OK;
+  }
   apply_dense(s, s->inverse, s->rigid);
   collect_rigid(s, s->rigid, s->resistance);
   sd_pseudo_inverse6(s->resistance, s->mobility);

@@ -50,6 +50,27 @@ static void lone_sphere_moves_by_its_closed_form(void **state)
   CHECK_NEAR(6.0 * SD_PI * N[14], 1.0 - 9.0 / 8.0 * s + pow(s, 3) / 2.0 - pow(s, 5) / 8.0, 1e-14);
   CHECK_NEAR(8.0 * SD_PI * N[24], pow(s, 4) / 8.0, 1e-14);
   CHECK_NEAR(8.0 * SD_PI * N[9], -pow(s, 4) / 8.0, 1e-14);
+  for (int p = 0; p < 6; p++)
+    for (int q = 0; q < 6; q++) {
+      double one_there = 0.0;
+      for (int k = 0; k < 6; k++) one_there += N[6 * p + k] * shape.resistance[6 * k + q];
+      CHECK_NEAR(one_there, p == q, 1e-13);
+      CHECK_NEAR(shape.rigid[6 * p + q], shape.inverse[6 * p + q], 1e-15);
+    }
+  sd_body_shape_free(&shape);
+}
+
+/* As a body whose centre is a length d below it: a force there has the torque d F on the sphere */
+static void sphere_off_the_centre_moves_it_more(void **state)
+{
+  (void) state;
+  const double d = 0.7, a = 1.2, at[3] = {0.0, 0.0, d};
+  double M[36] = {0.0};
+  for (int p = 0; p < 6; p++) M[7 * p] = 1.0 / (p < 3 ? 6.0 * SD_PI * a : 8.0 * SD_PI * a * a * a);
+  sd_body_shape shape;
+  assert_int_equal(sd_body_shape_of(1, 6, at, &a, M, &shape), SD_OK);
+  CHECK_NEAR(shape.mobility[0], M[0] + d * d * M[21], 1e-15);
+  CHECK_NEAR(shape.mobility[14], M[0], 1e-15);
   sd_body_shape_free(&shape);
 }
 
@@ -76,6 +97,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(matrix_is_that_of_the_product),
       cmocka_unit_test(lone_sphere_moves_by_its_closed_form),
+      cmocka_unit_test(sphere_off_the_centre_moves_it_more),
       cmocka_unit_test(blocks_are_made_where_they_pay),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
