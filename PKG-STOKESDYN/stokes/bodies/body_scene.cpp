@@ -166,15 +166,10 @@ BodyNoise::Turns BodyScene::turns(size_t body) const
   return rank == 0 ? BodyNoise::STILL : rank == 1 ? BodyNoise::OTHERWISE : BodyNoise::ALONG;
 }
 
-sd_bodies BodyScene::undrawn()
+sd_bodies BodyScene::undrawn() const
 {
   sd_bodies rest = bodies;
-  if (scene.shells) {
-    of_points_undrawn = of_points;
-    of_points_undrawn.pairs = sd_mobility_apply_rest;
-    rest.apply_ctx = &of_points_undrawn;
-  } else
-    rest.apply = sd_mobility_apply_rest;
+  rest.apply = sd_mobility_apply_rest;
   return rest;
 }
 

@@ -64,7 +64,7 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   BodyNoise::Turns turns(size_t shaped) const;
   /* Where the engine draws a part of its matrix at once (divides of sd_mobility.h): the bodies with the rest
    * of it. It stands as long as they do. */
-  sd_bodies undrawn();
+  sd_bodies undrawn() const;
   /* The films of these atoms where they stand now, before the points of the bodies go elsewhere */
   void stand_films(const std::vector<int> &who);
   /* Those that stand, in a fluid at rest; random forces of them (Lubrication::draw) */
@@ -104,7 +104,7 @@ class BodyScene : protected LAMMPS_NS::Pointers {
    * and its second derivatives or nothing */
   std::vector<int> sphere;
   std::vector<double> r, velocity, slope, bend;
-  sd_multiblob_mobility of_points = {}, of_points_undrawn = {};
+  sd_multiblob_additions of_points = {};
   sd_faces faces = {};
   std::vector<char> whole_shells;
 

@@ -98,10 +98,8 @@ void BodyScene::put_points()
            of_points.spheres.first};
   bodies.faces = &faces;
   alone.n = all;
-  of_points.pairs = bodies.apply;
-  of_points.pairs_ctx = bodies.apply_ctx;
-  bodies.apply = sd_multiblob_apply;
-  bodies.apply_ctx = &of_points;
+  bodies.add = sd_multiblob_add;
+  bodies.add_ctx = &of_points;
 }
 
 /* u at the points less the slip there */

@@ -273,6 +273,14 @@ int sd_bodies_shells(const sd_bodies *A)
   return 0;
 }
 
+/* What the model adds for spheres whose rows begin before `end`, from sphere `first` on; returns the next one. */
+static int add_spheres(const sd_bodies *A, int first, long end, const double *l, double *w)
+{
+  const int next = sd_rigid_whole(&A->points, (int) (end / A->points.width) - 1) + 1;
+  A->add(A->add_ctx, first, next, l, w);
+  return next;
+}
+
 sd_status sd_bodies_product(const sd_bodies *A, int shells, const double *l, const double *V,
                             double *bodies, double *on_spheres, double *w)
 {
@@ -287,8 +295,11 @@ sd_status sd_bodies_product(const sd_bodies *A, int shells, const double *l, con
     V = less;
   }
   const double *moved = sd_bodies_move_spheres(A, V, on_spheres);
-  for (sd_bodies_part part = {0}; sd_bodies_next(A, moved, &part);)
+  int added = 0;
+  for (sd_bodies_part part = {0}; sd_bodies_next(A, moved, &part);) {
+    if (A->add) added = add_spheres(A, added, part.end, l, w);
     for (long j = part.begin; j < part.end; j++) w[j] += l[j] / A->D[j] - part.v[j - part.begin];
+  }
   return SD_OK;
 }
 

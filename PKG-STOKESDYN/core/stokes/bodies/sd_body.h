@@ -54,9 +54,12 @@ typedef struct {
   const sd_faces *faces;
   /* [width points] 6 pi eta a in rows of forces, 8 pi eta a^3 in those of torques */
   const double *D;
-  /* M without D^-1: the pairs of an engine, and what a model adds for each body alone */
+  /* M without D^-1: the pairs of an engine; and what a model adds for each sphere alone, to the rows u of
+   * spheres begin ... end - 1 (NULL: nothing, and so wherever the spheres are the points) */
   sd_apply *apply;
   void *apply_ctx;
+  void (*add)(const void *ctx, int begin, int end, const double *l, double *u);
+  const void *add_ctx;
   /* lubrication; NULL: none */
   struct sd_tie *tie;
   /* sum */

@@ -77,14 +77,15 @@ void sd_multiblob_expand(const sd_multiblob *models, const sd_multiblob_spheres 
   }
 }
 
-void sd_multiblob_add(const sd_multiblob *models, const sd_multiblob_spheres *s, const double *w,
-                      const double *r, const double *f, double *u)
+void sd_multiblob_add(const void *ctx, int begin, int end, const double *f, double *u)
 {
-  for (int i = 0; i < s->n; i++) {
-    const sd_multiblob *m = sd_multiblob_of(models, s, i);
-    const long row = 3 * sd_multiblob_first(models, s, i);
+  const sd_multiblob_additions *of = ctx;
+  const sd_multiblob_spheres *s = &of->spheres;
+  for (int i = begin; i < end; i++) {
+    const sd_multiblob *m = sd_multiblob_of(of->model, s, i);
+    const long row = 3 * sd_multiblob_first(of->model, s, i);
     if (m->delta == 0.0 || !sd_multiblob_is_whole(s, i)) continue;
-    sd_multiblob_one_body(m, s->a[i], 1.0 / (w[i] * w[i]), r + row, f + row, u + row);
+    sd_multiblob_one_body(m, s->a[i], 1.0 / (of->w[i] * of->w[i]), of->r + row, f + row, u + row);
   }
 }
 

@@ -74,9 +74,17 @@ static inline int sd_multiblob_is_whole(const sd_multiblob_spheres *s, long i)
 void sd_multiblob_expand(const sd_multiblob *m, const sd_multiblob_spheres *s, double *r, double *x,
                          double *b);
 
-/* u [3 rows] += the one-body addition of each sphere that has it, w [n] 1/sqrt(eta) */
-void sd_multiblob_add(const sd_multiblob *m, const sd_multiblob_spheres *s, const double *w,
-                      const double *r, const double *f, double *u);
+/* The one-body additions of spheres of models; all that it points to outlives it */
+typedef struct {
+  const sd_multiblob *model;
+  sd_multiblob_spheres spheres;
+  /* [spheres.n] 1/sqrt(eta); [3 rows] from the centres */
+  const double *w, *r;
+} sd_multiblob_additions;
+
+/* u [3 rows] += that of each of the spheres begin ... end - 1 that has it. ctx is an sd_multiblob_additions:
+ * for sd_bodies.add. */
+void sd_multiblob_add(const void *ctx, int begin, int end, const double *f, double *u);
 
 /* First moments of the forces f of the points of a sphere about its centre, symmetric and traceless, xx
  * yy zz xy xz yz: S [6] += dev sym sum r_k f_k. f acts on the fluid; the stress of the suspension is

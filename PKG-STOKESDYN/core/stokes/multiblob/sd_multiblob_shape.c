@@ -243,11 +243,3 @@ void sd_multiblob_shape_free(sd_multiblob_shape *s)
   sd_body_shape_free(&s->points);
   *s = (sd_multiblob_shape){0};
 }
-
-sd_status sd_multiblob_apply(void *ctx, const double *f, double *u)
-{
-  const sd_multiblob_mobility *M = ctx;
-  const sd_status status = M->pairs(M->pairs_ctx, f, u);
-  if (status == SD_OK) sd_multiblob_add(M->model, &M->spheres, M->w, M->r, f, u);
-  return status;
-}

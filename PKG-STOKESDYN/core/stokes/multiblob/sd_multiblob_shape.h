@@ -9,7 +9,6 @@
 #include "sd_body_shape.h"
 #include "sd_faces.h"
 #include "sd_multiblob_points.h"
-#include "sd_solve.h"
 
 SD_BEGIN_C
 
@@ -47,22 +46,6 @@ void sd_multiblob_shape_free(sd_multiblob_shape *s);
  * azimuth: the shells get one that only the line's direction says, and the pose with them. */
 void sd_multiblob_shape_stand(const sd_multiblob_shape *s, const double R[9], double pose[9],
                               double turn[9]);
-
-/* M without 1/(6 pi eta b): the pairs of points by an engine, and the one-body addition. For
- * sd_bodies.apply; all that it points to outlives it. */
-typedef struct {
-  /* the models of the spheres */
-  const sd_multiblob *model;
-  /* of this rank */
-  sd_multiblob_spheres spheres;
-  /* [spheres.n] 1/sqrt(eta); [3 points] from the centres */
-  const double *w, *r;
-  sd_apply *pairs;
-  void *pairs_ctx;
-} sd_multiblob_mobility;
-
-/* u = M f; ctx is an sd_multiblob_mobility. SD_OK or that of pairs. */
-sd_status sd_multiblob_apply(void *ctx, const double *f, double *u);
 
 SD_END_C
 #endif

@@ -21,7 +21,7 @@ typedef struct {
   sd_packed packed;
   periodic p;
   sd_tie tie;
-  sd_multiblob_mobility M;
+  sd_multiblob_additions own_ones;
   sd_faces_pattern pattern;
   sd_faces faces;
   /* of an open scene; sign 0: none */
@@ -99,7 +99,7 @@ static inline sd_bodies place(blob_flock *f, double side, double tolerance)
   const int own = s->m.n, points = own * s->n;
   for (int k = 0; k < 3 * s->n && side > 0.0; k++) s->x[k] -= side * floor(s->x[k] / side);
   if (!s->r) blobs_expand(s);
-  f->M = (sd_multiblob_mobility){
+  f->own_ones = (sd_multiblob_additions){
       .model = &s->m, .spheres = {s->x, s->a, s->turn, s->mask, s->n}, .w = s->w, .r = s->r};
   for (int k = 0; k < points; k++) f->w[k] = 1.0;
   if (side > 0.0) {
@@ -109,11 +109,9 @@ static inline sd_bodies place(blob_flock *f, double side, double tolerance)
     assert_int_equal(sd_ewald_choose(&box, &sizes, 3, tolerance, &split), SD_OK);
     periodic_place(&f->p, s->at, s->b, NULL, points, 3, &split);
     s->side = side;
-    f->M.pairs = sd_mobility_apply, f->M.pairs_ctx = &f->p.omega;
   } else {
     const sd_spheres spheres = {s->at, s->b, f->w};
     assert_int_equal(sd_packed_all(&f->packed, SD_ISA_BEST, &law, &spheres, points, 3), SD_OK);
-    f->M.pairs = all_pairs, f->M.pairs_ctx = &f->packed;
   }
   int bodies = 0;
   for (int i = 0; i < s->n; i += f->m ? f->m : 1, bodies++) {
@@ -144,8 +142,10 @@ static inline sd_bodies place(blob_flock *f, double side, double tolerance)
                      .points = {points, 3, f->sphere, s->r},
                      .faces = &f->faces,
                      .D = f->D,
-                     .apply = sd_multiblob_apply,
-                     .apply_ctx = &f->M};
+                     .apply = side > 0.0 ? sd_mobility_apply : all_pairs,
+                     .apply_ctx = side > 0.0 ? (void *) &f->p.omega : &f->packed,
+                     .add = sd_multiblob_add,
+                     .add_ctx = &f->own_ones};
 }
 
 static inline void tie_with_films(blob_flock *f, sd_bodies *A)

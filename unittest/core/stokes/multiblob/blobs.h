@@ -85,13 +85,14 @@ static inline void blobs_expand(blobs *s)
 static inline void blobs_add_one_body(blobs *s)
 {
   const sd_multiblob_spheres spheres = {s->x, s->a, s->turn, s->mask, s->n, NULL, NULL};
+  const sd_multiblob_additions own_ones = {&s->m, spheres, s->w, s->r};
   double *f = calloc((size_t) s->N, sizeof(double)), *u = malloc(sizeof(double) * (size_t) s->N);
   const int own = 3 * s->m.n;
   for (int j = 0; j < own;
        j++) { /* the same number of all spheres at once: they do not know each other here */
     for (int i = 0; i < s->n; i++) f[own * i + j] = 1.0;
     memset(u, 0, sizeof(double) * (size_t) s->N);
-    sd_multiblob_add(&s->m, &spheres, s->w, s->r, f, u);
+    sd_multiblob_add(&own_ones, 0, s->n, f, u);
     for (int k = 0; k < s->N; k++)
       s->M[(size_t) k * (size_t) s->N + (size_t) (own * (k / own) + j)] += u[k];
     for (int i = 0; i < s->n; i++) f[own * i + j] = 0.0;

@@ -2,6 +2,7 @@
  * sd_bodies.h. */
 #include "blob_flock.h"
 
+#include "sd_bodies_alone.h"
 #include "table.h"
 
 static double off_by(const double *v, const double *w, int n)
@@ -28,6 +29,32 @@ static void lone_sphere(void **state)
     assert_true(f->report.products <= 2);
     blob_flock_free(f);
   }
+}
+
+/* Rows are gone over a few points at a time (sd_bodies_next), and shells of 42 points are cut by that. */
+static void product_is_dense_where_parts_cut_shells(void **state)
+{
+  (void) state;
+  enum { SPHERES = 5, ROWS = 3 * 42 * SPHERES };
+  double x[3 * SPHERES], a[SPHERES], l[ROWS], w[ROWS], expected[ROWS] = {0.0};
+  double bodies[12 * SPHERES], on_spheres[6 * SPHERES];
+  const double still[6 * SPHERES] = {0.0};
+  uint64_t seed = 5;
+  for (int i = 0; i < SPHERES; i++) {
+    a[i] = 0.6 + 0.1 * i;
+    for (int d = 0; d < 3; d++) x[3 * i + d] = 2.3 * i * (d == i % 3) - 0.4 * d;
+  }
+  for (int j = 0; j < ROWS; j++) l[j] = uniform(&seed, -1, 1);
+  blob_flock *f = free_spheres(42, SPHERES, x, a);
+  blobs_open(f->s);
+  const sd_bodies A = place(f, 0.0, 0.0);
+  assert_int_not_equal(SD_BODIES_PART % 42, 0);
+  assert_true(SD_BODIES_PART < A.points.n);
+  for (int j = 0; j < ROWS; j++)
+    for (int k = 0; k < ROWS; k++) expected[j] += f->s->M[ROWS * j + k] * l[k];
+  assert_int_equal(sd_bodies_product(&A, 0, l, still, bodies, on_spheres, w), SD_OK);
+  assert_true(off_by(w, expected, ROWS) < 1e-12);
+  blob_flock_free(f);
 }
 
 static int positions_of(double *x, double *side)
@@ -246,6 +273,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lone_sphere),
+      cmocka_unit_test(product_is_dense_where_parts_cut_shells),
       cmocka_unit_test(loop_is_dense_algebra),
       cmocka_unit_test(lone_clumps),
       cmocka_unit_test(two_rigid_clumps),

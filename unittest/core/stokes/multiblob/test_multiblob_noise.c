@@ -226,7 +226,7 @@ static void near_blocks_are_those_of_the_engine(void **state)
   split.count = 12;
   periodic_free(&f->p);
   periodic_place(&f->p, f->s->at, f->s->b, NULL, 12, 3, &split);
-  f->M.pairs = sd_mobility_apply_rest;
+  A.apply = sd_mobility_apply_rest;
   assert_true(sd_mobility_divides(&f->p.omega));
   sd_body_root root;
   assert_int_equal(sd_body_root_create(&f->lone.points, 1.1, &split, &root), SD_OK);

@@ -11,7 +11,6 @@
 /* A flock in a cube whose sum is split as for noise. near, whole: its matrix of points less the waves, and with them */
 typedef struct {
   blob_flock *f;
-  sd_multiblob_mobility undrawn;
   sd_bodies near, whole;
   sd_body_root root[MOST];
   const sd_body_root *of[MOST];
@@ -29,9 +28,7 @@ static void split_in_cube(split_scene *s, blob_flock *f, double side, double tol
   periodic_place(&f->p, f->s->at, f->s->b, NULL, s->whole.points.n, 3, &split);
   assert_true(sd_mobility_divides(&f->p.omega));
   s->near = s->whole;
-  s->undrawn = f->M;
-  s->undrawn.pairs = sd_mobility_apply_rest;
-  s->near.apply_ctx = &s->undrawn;
+  s->near.apply = sd_mobility_apply_rest;
   tie_with_films(f, &s->whole);
   for (int b = 0; b < s->whole.shaped; b++) {
     const sd_body_shape *shape = f->m ? &f->shape.points : &f->lone.points;
@@ -60,6 +57,7 @@ static void matrix_of(const split_scene *s, const sd_bodies *A, double *M)
   for (int j = 0; j < rows; j++) {
     e[j] = has(s, j);
     assert_int_equal(A->apply(A->apply_ctx, e, M + (long) rows * j), SD_OK);
+    A->add(A->add_ctx, 0, A->spheres.n, e, M + (long) rows * j);
     M[(long) (rows + 1) * j] += has(s, j) / A->D[j];
     e[j] = 0.0;
   }

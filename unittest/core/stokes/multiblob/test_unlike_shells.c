@@ -96,13 +96,13 @@ static void rows_by_offset(void **state)
   sd_multiblob_expand(m, &all, r, at, b);
   uint64_t seed = 3;
   for (int j = 0; j < 3 * 696; j++) f[j] = uniform(&seed, -1, 1);
-  sd_multiblob_add(m, &all, w, r, f, u);
+  sd_multiblob_add(&(sd_multiblob_additions){m, all, w, r}, 0, 3, f, u);
   for (int i = 0; i < 3; i++) {
     const sd_multiblob *of = m + kind[i];
     const sd_multiblob_spheres one = {x + 3 * i, a + i, NULL, NULL, 1, NULL, NULL};
     double own[3 * 642], there[3 * 642], radius[642], moved[3 * 642] = {0.0};
     sd_multiblob_expand(of, &one, own, there, radius);
-    sd_multiblob_add(of, &one, w + i, own, f + 3 * first[i], moved);
+    sd_multiblob_add(&(sd_multiblob_additions){of, one, w + i, own}, 0, 1, f + 3 * first[i], moved);
     for (int k = 0; k < of->n; k++)
       assert_true(b[first[i] + k] == (i == 1 && k >= 639 ? 0.0 : radius[k]));
     assert_memory_equal(at + 3 * first[i], there, sizeof(double) * 3 * (size_t) of->n);
