@@ -10,7 +10,7 @@ import sph_runs as S  # noqa: E402
 from runs import np  # noqa: E402
 
 c, plt = S.Checks(), S.pyplot()
-every = 75 if S.QUICK else 250
+every = 60 if S.QUICK else 250
 BASIN = 9       # length and depth of the reservoir above the bed
 
 

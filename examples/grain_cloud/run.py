@@ -56,7 +56,7 @@ for Re, h_over_d in ((10, 2), (10, 4), (200, 2), (200, 4)) if not S.QUICK else (
 # --- a cloud ----------------------------------------------------------------------------------------------------------
 
 N, R, L, F, mu, d = 150, 4.0, 20.0, 0.02, 1.0, 0.5
-out, run = S.lmp(folder, "grain_cloud", "cloud", steps=120 if S.QUICK else 400)
+out, run = S.lmp(folder, "grain_cloud", "cloud", steps=80 if S.QUICK else 400)
 shots = S.dump(os.path.join(out, "grain_cloud.dump"))
 places = np.stack([shots[-1][name][shots[-1]["type"] == 2] for name in ("x", "y", "zu")], 1)
 alone, speed = F / (3 * np.pi * mu * d), run["v_speed"][-1]

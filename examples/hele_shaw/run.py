@@ -49,13 +49,13 @@ class Slit:
         return np.array(self.lmp.numpy.extract_atom("v"))[:n][np.argsort(self.lmp.numpy.extract_atom("id")[:n].ravel())]
 
 
-def pair(out, H, **more):
+def pair(out, H, apart, **more):
     """Speed of the second sphere in line with the first and beside it: [2, distances]. In a square cell the flows with
     free and with closed ends differ from that without images by as much each way."""
-    L, found = 12 * APART.max(), np.zeros((2, len(APART)))
+    L, found = 12 * apart.max(), np.zeros((2, len(apart)))
     for flow in ("pressure", "flux"):
         slit = Slit(out, [(L / 4, L / 2, H / 2), (L / 4 + 5, L / 2, H / 2)], L, H, flow=flow, **more)
-        for k, r in enumerate(APART):
+        for k, r in enumerate(apart):
             for d, (x, y) in enumerate(((L / 4 + r, L / 2), (L / 4, L / 2 + r))):
                 found[d, k] += 0.5 * slit.velocities(f"set atom 2 x {x} y {y}")[1, 0]
         slit.lmp.close()
@@ -90,17 +90,17 @@ def crowd(out, rng, pushes):
     return at, v, own, L
 
 
-def draw(pairs, points, at, v, own, L, path):
+def draw(apart, pairs, points, at, v, own, L, path):
     plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.8), layout="constrained")
     r = np.linspace(2.3, 18, 100)
     for H in points:
         colour = WIDTHS[H]
         left.loglog(r, dipole(H, r), "-", color=colour, lw=0.8)
-        left.loglog(APART, points[H][0], "o", color=colour, ms=4, label=f"H = {H:g}: in line")
-        left.loglog(APART, -points[H][1], "o", color=colour, ms=4, mfc="none", label="side by side, backwards")
-        left.loglog(APART, pairs[H][0], "+", color=colour, ms=9)
-        left.loglog(APART, -pairs[H][1], "x", color=colour, ms=6)
+        left.loglog(apart, points[H][0], "o", color=colour, ms=4, label=f"H = {H:g}: in line")
+        left.loglog(apart, -points[H][1], "o", color=colour, ms=4, mfc="none", label="side by side, backwards")
+        left.loglog(apart, pairs[H][0], "+", color=colour, ms=9)
+        left.loglog(apart, -pairs[H][1], "x", color=colour, ms=6)
     left.set(xlabel="distance / radius", ylabel="speed of the other / that of a lone one in open fluid", ylim=(1e-4, 1),
              title="a pair; lines: the dipole; +, x: shells with films")
     left.set_xticks([2.5, 4, 6, 8, 12, 16], ["2.5", "4", "6", "8", "12", "16"])
@@ -124,20 +124,21 @@ def main():
     given = options(__file__, __doc__, quick=False)
     need("lmp")
     widths = [4.0] if given.quick else list(WIDTHS)
-    points = {H: pair(given.out, H, model=POINT) for H in widths}
-    pairs = {H: pair(given.out, H) for H in widths}
+    apart = APART[APART % 8 == 0] if given.quick else APART
+    points = {H: pair(given.out, H, apart, model=POINT) for H in widths}
+    pairs = {H: pair(given.out, H, apart) for H in widths}
     at, v, own, L = crowd(given.out, np.random.default_rng(3), 3 if given.quick else PUSHES)
-    draw(pairs, points, at, v, own, L, given.out / "hele_shaw.png")
+    draw(apart, pairs, points, at, v, own, L, given.out / "hele_shaw.png")
     print(f"picture: {given.out / 'hele_shaw.png'}\n")
-    c, far = Checks(), len(APART) - 1
+    c, far = Checks(), len(apart) - 1
     narrow = [H for H in widths if H < 5]
     for H in narrow:
         for d, name in enumerate(("in line", "side by side")):
-            c.near(f"H = {H:g}, r = {APART[far]:g}, {name}: over the dipole", points[H][d][far] / dipole(H, APART[far]),
+            c.near(f"H = {H:g}, r = {apart[far]:g}, {name}: over the dipole", points[H][d][far] / dipole(H, apart[far]),
                    (1, -1)[d], 0.01)
-    c.near("H = 4, r = 8, in line: r^2 U", 64 * points[4.0][0][list(APART).index(8)], 1.8755, 0.004)
+    c.near("H = 4, r = 8, in line: r^2 U", 64 * points[4.0][0][list(apart).index(8)], 1.8755, 0.004)
     for H in narrow:
-        c.near(f"H = {H:g}: shells side by side at r = {APART[far]:g} over those in line",
+        c.near(f"H = {H:g}: shells side by side at r = {apart[far]:g} over those in line",
                pairs[H][1][far] / pairs[H][0][far], -1, 0.03)
     if 10.0 in points:
         c.within("H = 10: closer than the walls are wide, side by side at r = 3 they go along", points[10.0][1][1],

@@ -112,14 +112,14 @@ def test_a_rigid_body_that_turns_is_refused_and_one_that_only_sinks_is_not():
 def test_the_torque_of_central_is_that_of_taylor_couette():
     """4 pi mu w R1^2 R2^2 / (R2^2 - R1^2) on both walls, from the exact flow on."""
     lmp = start()
-    run(lmp, scene(TURNS, "central correction yes", n=20) + """
+    run(lmp, scene(TURNS, "central correction yes", n=14) + """
 variable torque atom x*fy-y*fx
 compute on_shaft shaft reduce sum v_torque
 compute on_case case reduce sum v_torque
-run 1000 post no
-fix mean all ave/time 1 1000 1000 c_on_shaft c_on_case
+run 700 post no
+fix mean all ave/time 1 700 700 c_on_shaft c_on_case
 thermo_style custom step c_on_shaft c_on_case
-run 1000 post no""")
+run 700 post no""")
     exact = 0.2 * 4 * np.pi * 4 / 3
     shaft, case = (lmp.extract_fix("mean", 0, 1, k) / exact for k in (0, 1))
     lmp.close()
