@@ -28,7 +28,6 @@ void BodyScene::place_points()
   const size_t n = scene.size(), points = scene.shells->first_of_rows()[n];
   const double *gradients = ambient.gradients(), *curvatures = ambient.curvatures();
   const size_t bends = curvatures ? SD_FLOW_SECOND : 0;
-  std::vector<double> b(points + 1);
   std::vector<double> rows = scene.rows(BEND + (int) bends, [&](int i, double *out) {
     std::copy_n(ambient.velocity(i), 3, out + VELOCITY);
     if (gradients) std::copy_n(gradients + 9 * (size_t) i, 9, out + SLOPE);
@@ -42,12 +41,13 @@ void BodyScene::place_points()
   of_points.w = spheres.w;
   r.resize(3 * points + 3);
   of_points.r = r.data();
-  sd_multiblob_expand(of_points.model, &of_points.spheres, r.data(), nullptr, b.data());
+  u.resize(3 * points + 3);
+  double *b = u.data();    // until the fluid there is known
+  sd_multiblob_expand(of_points.model, &of_points.spheres, r.data(), nullptr, b);
   sphere.resize(points);
   for (size_t k = 0; k < n; k++)
     std::fill_n(sphere.begin() + of_points.spheres.first[k], scene.shells->points_of_row(k), (int) k);
   D.assign(3 * points + 3, 1.0);
-  u.resize(3 * points + 3);
   for (size_t k = 0; k < points; k++) {
     const double w = spheres.w[sphere[k]], drag = 6.0 * SD_PI * b[k] / (w * w);
     for (int d = 0; d < 3 && b[k] > 0.0; d++) D[3 * k + d] = drag;

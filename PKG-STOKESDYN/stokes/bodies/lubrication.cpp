@@ -56,7 +56,7 @@ void Lubrication::surround(const Scene &where)
   x.assign(rows.x, rows.x + 3 * n);
   a.assign(rows.a, rows.a + n);
   w.assign(rows.w, rows.w + n);
-  if (!halo.find(lattice, (2.0 + settings.range) * where.largest(), x))
+  if (!halo.find_or_keep(lattice, (2.0 + settings.range) * where.largest(), x))
     voice.fail_one("keyword lubrication: the largest radius, " + text(where.largest()) +
                    ", reaches more than 1000 images of each sphere and 1e7 in all; is it in other units?");
   halo.extend(lattice.h, x, {&a, &w});

@@ -3,6 +3,7 @@
 #include "callback.h"
 
 #include "sd_linear.h"
+#include "sd_skin.h"
 
 #include <algorithm>
 #include <cmath>
@@ -81,6 +82,7 @@ void Halo::clear()
   sphere.clear();
   edges.clear();
   copies = 0;
+  reached = 0.0;
 }
 
 /* f: the places in units of the edges */
@@ -106,6 +108,34 @@ bool Halo::find(const Lattice &lattice, double reach, const std::vector<double> 
   std::vector<double> f;
   const Block rows = around(lattice, x, f);
   return find(lattice, reach, rows, rows, f, whom);
+}
+
+/* Wherever the box begins */
+static bool same_images(const Lattice &a, const Lattice &b)
+{
+  return std::equal(a.h, a.h + 6, b.h) && std::equal(a.periodic, a.periodic + 3, b.periodic);
+}
+
+/* A copy within reach of the rows now was within reach and a skin of them then, since it has moved as its sphere
+ * has. Where that is left open, as of places that are no numbers, they do not hold. */
+bool Halo::holds(const Lattice &lattice, double reach, const std::vector<double> &x, Whom whom) const
+{
+  const double spare = 0.5 * (reached - reach);
+  bool all = x.size() == stood.size() && spare >= 0.0 && whom == whom_then && same_images(lattice, lattice_then);
+  for (size_t i = 0; i < x.size() && all; i += 3) all = sd_distance_squared(&x[i], &stood[i]) <= spare * spare;
+  return smallest_of_all(post.world, (int) all) == 1;
+}
+
+bool Halo::find_or_keep(const Lattice &lattice, double reach, const std::vector<double> &x, Whom whom)
+{
+  if (holds(lattice, reach, x, whom)) return true;
+  const double wide = sd_with_skin(reach);
+  if (!find(lattice, wide, x, whom)) return false;
+  reached = wide;
+  whom_then = whom;
+  lattice_then = lattice;
+  stood = x;
+  return true;
 }
 
 bool Halo::find_around(const Lattice &lattice, double reach, const std::vector<double> &x,
@@ -255,7 +285,7 @@ sd_world Halo::ranks() const
 double Halo::memory_usage() const
 {
   return sizeof(int) * ((double) sphere.capacity() + edges.capacity()) +
-      sizeof(double) * (double) outbox.capacity();
+      sizeof(double) * (double) (outbox.capacity() + stood.capacity());
 }
 
 }    // namespace StokesDyn

@@ -32,6 +32,10 @@ class Halo {
    * them, that holds this rank's rows x [3n]; they are there when extend() has brought them. On all ranks
    * together. false: more copies of this rank's spheres than 1e7 and than 1000 for each. */
   bool find(const Lattice &lattice, double reach, const std::vector<double> &x, Whom whom = OTHERS);
+  /* The same, or those found before and in their order, as long as they hold: the lattice is the same, those whom
+   * a rank gets, and the rows are as many, and none stands farther than half a skin (sd_skin.h) from where it did
+   * then */
+  bool find_or_keep(const Lattice &lattice, double reach, const std::vector<double> &x, Whom whom = OTHERS);
   /* The same within `reach` of what is from lo [3] to hi [3], other on each rank and nothing where
    * lo > hi; this rank's own spheres are among them. They are there at once. */
   bool find_around(const Lattice &lattice, double reach, const std::vector<double> &x,
@@ -66,6 +70,12 @@ class Halo {
   /* the spheres of this rank that go, partner by partner, and by how many edges each is moved */
   std::vector<int> sphere, edges;
   mutable std::vector<double> outbox;
+  /* of copies that may be kept: within which reach they were found, 0: they may not; who, in which lattice, and
+   * where the rows of this rank stood */
+  double reached = 0.0;
+  Whom whom_then = OTHERS;
+  Lattice lattice_then = {};
+  std::vector<double> stood;
 
   /* the smallest parallelepiped that holds something: lower and upper faces, in units of the edges */
   struct Block {
@@ -74,6 +84,7 @@ class Halo {
   static Block around(const Lattice &lattice, const std::vector<double> &x, std::vector<double> &f);
   bool find(const Lattice &lattice, double reach, const Block &rows, const Block &wanted,
             const std::vector<double> &f, Whom whom);
+  bool holds(const Lattice &lattice, double reach, const std::vector<double> &x, Whom whom) const;
   void tell(const int *to, int *from) const;
   void put_place(const double h[6], const double *x, size_t k, double *out) const;
   bool send_to(int p, const Lattice &lattice, const std::vector<double> &f, const double from[6],

@@ -109,13 +109,12 @@ void Scene::drift(double *rows, int width, double sign) const
       sd_add_edges(signed_jumps, &whole.edges[3 * m], rows + width * (size_t) row_of[m]);
 }
 
-void Scene::surround(double reach, const std::string &keyword, Halo::Whom whom)
+void Scene::surround(bool found, const std::string &keyword)
 {
-  const Lattice lattice = Lattice::of(domain);
-  if (!halo.find(lattice, reach, x, whom))
+  if (!found)
     voice.fail_one("keyword " + keyword + ", reaches more than 1000 images of each sphere and 1e7 "
                    "in all; is it in other units?");
-  halo.extend(lattice.h, x, {&a, &w});
+  halo.extend(Lattice::of(domain).h, x, {&a, &w});
 }
 
 // --- who sees whom -------------------------------------------------------------------------------
@@ -129,8 +128,9 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient, std::vec
     if (view() == SD_VIEW_NEAR) {
       look_for_others(ewald.count + second_level.count);
       if (!somebody_sees) return;
-      surround(ewald.reach + 2.0 * extent(most), "far_field: the largest radius, " + text(most),
-               one_sided() ? Halo::ABOVE : Halo::OTHERS);
+      surround(halo.find_or_keep(Lattice::of(domain), ewald.reach + 2.0 * extent(most), x,
+                                 one_sided() ? Halo::ABOVE : Halo::OTHERS),
+               "far_field: the largest radius, " + text(most));
       tell();
       place(size_with_copies(), idle);
     } else {
@@ -173,7 +173,7 @@ void Scene::find_pairs()
   if (settings.whole && settings.clumps_only)
     halo.clear();
   else
-    surround(reach, "cut_off_distance: '" + text(settings.cutoff) + "'", Halo::OTHERS);
+    surround(halo.find(Lattice::of(domain), reach, x), "cut_off_distance: '" + text(settings.cutoff) + "'");
   const int n_all = size_with_copies();
   sd_status status;
   if (settings.clumps_only) {

@@ -276,7 +276,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   void tell();
   void find_rows();
   void sort_lone_atoms();
-  void surround(double reach, const std::string &keyword, Halo::Whom whom);
+  /* copies: found, or too many for this keyword's reach */
+  void surround(bool found, const std::string &keyword);
   void find_pairs();
   void look_for_others(double spheres);
   void gather();

@@ -127,6 +127,34 @@ def test_films_across_a_sheared_face_are_those_of_the_middle(tmp_path, ranks):
     assert np.abs(F[1] - F[0]).max() < 1e-6
 
 
+# --- lists and copies that are kept -----------------------------------------------------------------------------------
+
+KEPT = "cut_off_distance inf visc 1.3 multiblob 12 lubrication yes relative_tolerance 1e-10 far_field_tolerance 1e-8"
+EVENTS = {"none": [], "fewer": ["group gone id 4 15 26", "delete_atoms group gone"],
+          "sorted": ["atom_modify sort 1 1.0"], "box": ["change_box all x scale 0.93"],
+          "moved": ["displace_atoms all random 0.4 0.4 0.4 77"], "larger": ["set atom 5 diameter 1.8"]}
+
+
+@pytest.mark.parametrize("event", EVENTS)
+def test_velocities_are_those_of_lists_made_anew(tmp_path, event):
+    """Steps in which lists are kept and made anew, copies come and go, and something happens between two runs."""
+    rng = np.random.default_rng(2)
+    grid = np.array([(x, y, z) for x in range(3) for y in range(3) for z in range(3)])
+    spheres = Spheres(3.0 * grid - 3.0 + rng.uniform(-0.4, 0.4, size=(27, 3)), 0.7)
+    lines = input_lines(spheres, KEPT, tmp_path / "data", boundary="p p p", box=[(-4.5, 4.5)] * 3, fix=False, dt=0.05,
+                        comm="neighbor 0.5 bin\nvariable f atom 9*sin(7*id)",
+                        before_pair="fix pull all addforce v_f -6 4\nfix move all stokes_dynamics/overdamped")
+    lines += ["run 10"] + EVENTS[event] + ["run 0"]
+    style = ["pair_style none", f"pair_style stokes_dynamics {KEPT}", "pair_coeff * *"]
+    for k, anew in enumerate(([], style + ["run 0"])):
+        lines += anew + [f"write_dump all custom {tmp_path}/v{k} id {COLUMNS} modify sort id format float %.17g"]
+    for ranks in allowed(*((1, 2, 4) if event == "none" else (2,))):
+        lmp(tmp_path, lines, ranks=ranks)
+        kept, anew = (read_dump(tmp_path / f"v{k}")[-1][1] for k in range(2))
+        assert np.abs(kept[:, :3] - spheres.x[:len(kept)]).max() > 0.3 and np.abs(kept[:, 3:]).max() > 0.3
+        assert np.abs(anew - kept).max() < 1e-8 * np.abs(kept[:, 3:]).max()
+
+
 # --- what a run may get wrong -----------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("words", ["clumps_only yes rigid_clumps yes visc 1.3",

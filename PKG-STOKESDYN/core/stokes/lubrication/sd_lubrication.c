@@ -317,7 +317,7 @@ void sd_lubrication_own_block(const sd_lubrication *L, long i, double B[36])
 void sd_lubrication_free(sd_lubrication *L)
 {
   if (L->work) {
-    sd_neighbors_free(&L->work->near);
+    sd_near_free(&L->work->near);
     free(L->work->identity);
     free(L->work->neighbours);
     free(L->work->flow);

@@ -35,7 +35,7 @@ typedef struct {
 } whole_pair;
 
 struct sd_lubrication_work {
-  sd_neighbors near;
+  sd_near near;
   /* [n_all] whose each is; n_i; u [6] */
   identity *identity;
   double *neighbours, *flow;

@@ -73,13 +73,14 @@ sd_status sd_lubrication_find_pairs(sd_lubrication *L, const sd_lubrication_scen
   struct sd_lubrication_work *w = L->work;
   const int beyond = s->world.ranks > 1, rows = beyond ? s->n_all : s->n;
   sd_status status = identify(L, s);
-  if (status == SD_OK) status = sd_near_once(&w->near, &s->spheres, rows, s->n_all, 2.0 + s->range);
-  if (status == SD_OK) status = reserve_pairs(L, w->near.first[rows]);
+  if (status == SD_OK) status = sd_near_keep(&w->near, &s->spheres, rows, s->n_all, 2.0 + s->range);
+  const sd_neighbors *near = &w->near.list;
+  if (status == SD_OK) status = reserve_pairs(L, near->first[rows]);
   if (status != SD_OK) return status;
   L->count = 0;
   for (int i = 0; i < s->n; i++)
-    for (long k = w->near.first[i]; k < w->near.first[i + 1]; k++) {
-      const int at = w->near.neighbor[k], j = row_at(L, at);
+    for (long k = near->first[i]; k < near->first[i + 1]; k++) {
+      const int at = near->neighbor[k], j = row_at(L, at);
       if (j >= i) keep_pair(L, s, &L->count, i, j, at);
     }
   double *met = w->neighbours;
@@ -87,8 +88,8 @@ sd_status sd_lubrication_find_pairs(sd_lubrication *L, const sd_lubrication_scen
   for (long k = 0; k < L->count; k++) met[L->pair[k][1]] = 1.0;
   long last = L->count;
   for (int i = s->n; i < rows; i++)
-    for (long k = w->near.first[i]; met[i] != 0.0 && k < w->near.first[i + 1]; k++) {
-      const int j = w->near.neighbor[k];
+    for (long k = near->first[i]; met[i] != 0.0 && k < near->first[i + 1]; k++) {
+      const int j = near->neighbor[k];
       if (met[j] != 0.0) keep_pair(L, s, &last, i, j, j);
     }
   L->beyond = last - L->count;

@@ -7,6 +7,7 @@
 #include "sd_cells.h"
 #include "sd_linear.h"
 #include "sd_room.h"
+#include "sd_skin.h"
 
 typedef struct {
   double x[3], a;
@@ -199,4 +200,45 @@ sd_status sd_near_once(sd_neighbors *list, const sd_spheres *s, int n, int n_all
   if (status == SD_OK) status = sort_rows(list, &q);
   near_release(&q);
   return status;
+}
+
+/* --- kept --- */
+
+/* A pair within reach now was within reach and a skin then, as each of the two has moved by its part of the skin of
+ * this pair at most. Of places that are no numbers it is not known. */
+static int near_holds(const sd_near *near, const sd_spheres *s, int n, int n_all, double reach)
+{
+  const double part = 0.5 * (near->reach - reach);
+  int all = near->n == n && near->n_all == n_all && part >= 0.0;
+  for (long i = 0; i < n_all && all; i++) {
+    const double *then = near->stood + 4 * i, spare = part * s->a[i];
+    const int stays = s->a[i] == 0.0 || sd_distance_squared(then, s->x + 3 * i) <= spare * spare;
+    all = then[3] == s->a[i] && stays;
+  }
+  return all;
+}
+
+sd_status sd_near_keep(sd_near *near, const sd_spheres *s, int n, int n_all, double reach)
+{
+  if (near_holds(near, s, n, n_all, reach)) return SD_OK;
+  near->reach = 0.0;
+  if (!sd_reserve(&near->stood, sizeof(double), 4 * (size_t) n_all, &near->stood_room)) return SD_ENOMEMORY;
+  const double wide = sd_with_skin(reach);
+  const sd_status status = sd_near_once(&near->list, s, n, n_all, wide);
+  if (status != SD_OK) return status;
+  near->n = n;
+  near->n_all = n_all;
+  near->reach = wide;
+  for (long i = 0; i < n_all; i++) {
+    memcpy(near->stood + 4 * i, s->x + 3 * i, 3 * sizeof(double));
+    near->stood[4 * i + 3] = s->a[i];
+  }
+  return SD_OK;
+}
+
+void sd_near_free(sd_near *near)
+{
+  sd_neighbors_free(&near->list);
+  free(near->stood);
+  memset(near, 0, sizeof(*near));
 }

@@ -47,6 +47,20 @@ sd_status sd_smallest_gap(const double *x, const double *a, const int64_t *body,
  * and the largest radius. SD_OK or SD_ENOMEMORY. */
 sd_status sd_near_once(sd_neighbors *list, const sd_spheres *s, int n, int n_all, double reach);
 
+/* The same list, kept from call to call; zero-initialise, sd_near_free in the end. */
+typedef struct {
+  /* pairs within the reach, and others with a skin (sd_skin.h) that are not */
+  sd_neighbors list;
+  /* when it was made: its n, n_all and reach, and [4 n_all] where spheres stood and their radii */
+  int n, n_all;
+  double reach, *stood;
+  size_t stood_room;
+} sd_near;
+
+/* near->list: made anew, or as it is while it holds. Its order is that of its making. As sd_near_once. */
+sd_status sd_near_keep(sd_near *near, const sd_spheres *s, int n, int n_all, double reach);
+void sd_near_free(sd_near *near);
+
 /* Spheres and who they are: x [3 n_all], tag [n_all], molecule [n_all] */
 typedef struct {
   const double *x;

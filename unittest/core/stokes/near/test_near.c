@@ -1,5 +1,6 @@
 #include "scene.h"
 
+#include "sd_linear.h"
 #include "sd_neighbor.h"
 
 #include <string.h>
@@ -49,6 +50,53 @@ static void close_pairs_are_those_of_the_double_loop(void **state)
     }
 }
 
+/* The pairs of a list that are within reach, against the double loop */
+static void check_kept(const sd_near *near, const scene *s, int n, double reach)
+{
+  static table_of_pairs seen;
+  count(&near->list, n, seen);
+  for (int i = 0; i < n; i++)
+    for (int j = i + 1; j < N; j++) {
+      const double limit = 0.5 * reach * (s->a[i] + s->a[j]);
+      const double square = sd_distance_squared(s->x + 3 * i, s->x + 3 * j);
+      if (s->a[i] > 0.0 && s->a[j] > 0.0 && square <= limit * limit) assert_int_equal(seen[i][j], 1);
+    }
+}
+
+/* Over small steps a list holds, as where spheres stood at its making says; it is made anew when one goes far, grows,
+ * or is nowhere, and when the reach grows: no close pair is missing, whatever its age. */
+static void a_list_of_any_age_has_all_close_pairs(void **state)
+{
+  (void) state;
+  const double reach = 4.0;
+  uint64_t seed = 8;
+  int made_anew = 0;
+  scene s = scene_create(N);
+  for (int i = 0; i < N; i++)
+    scene_set(&s, i, uniform(&seed, -9, 9), uniform(&seed, -9, 9), uniform(&seed, -9, 9),
+              i % 17 == 3 ? 0.0 : uniform(&seed, 0.6, 1.0), 1.3);
+  const sd_spheres spheres = {s.x, s.a, s.w};
+  sd_near near = {0};
+  static double velocity[3 * N];
+  for (int i = 0; i < 3 * N; i++) velocity[i] = uniform(&seed, -0.04, 0.04);
+  for (int step = 0; step < 40; step++) {
+    const double stood = near.stood ? near.stood[0] : 0.0;
+    for (int i = 0; i < 3 * N && step != 30; i++) s.x[i] += velocity[i];
+    if (step == 20) s.x[3 * 77] += 5.0;
+    if (step == 30) s.a[200] *= 2.0; /* and nobody moves */
+    const double wide = step < 35 ? reach : 1.3 * reach;
+    assert_int_equal(sd_near_keep(&near, &spheres, N - 70, N, wide), SD_OK);
+    check_kept(&near, &s, N - 70, wide);
+    made_anew += near.stood[0] != stood;
+  }
+  assert_in_range(made_anew, 4, 20);
+  s.x[5] = NAN;
+  assert_int_equal(sd_near_keep(&near, &spheres, N - 70, N, reach), SD_OK);
+  assert_true(isnan(near.stood[4 * 1 + 2]));
+  sd_near_free(&near);
+  scene_free(&s);
+}
+
 /* Two at the very reach, one by a hair on the other side of the origin, where a cell may begin: so
  * near 0 their distance is rounded to the reach. */
 static void none_is_lost_between_cells(void **state)
@@ -81,6 +129,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(close_pairs_are_those_of_the_double_loop),
+      cmocka_unit_test(a_list_of_any_age_has_all_close_pairs),
       cmocka_unit_test(none_is_lost_between_cells),
       cmocka_unit_test(nobody_is_close_to_nobody),
   };

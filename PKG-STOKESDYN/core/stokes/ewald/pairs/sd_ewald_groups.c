@@ -8,6 +8,7 @@
 #include "sd_ewald_rows.h"
 #include "sd_linear.h"
 #include "sd_room.h"
+#include "sd_skin.h"
 
 enum { COLUMNS = 3 * SD_GROUP_POINTS };
 
@@ -15,6 +16,8 @@ void sd_ewald_groups_free(sd_ewald_groups *g)
 {
   sd_ewald_cells_free(&g->cells);
   free(g->middle);
+  free(g->candidate);
+  free(g->from);
   free(g->first);
   free(g->near);
   free(g->range);
@@ -37,42 +40,88 @@ int sd_ewald_groups_serve(const sd_ewald_pairs *p, const sd_groups *groups)
 
 /* --- rows --- */
 
-/* Middles of the points that there are, and their numbers; returns how far a point is from a middle at
- * most. */
-static double find_middles(const sd_groups *groups, const sd_spheres *s, double *middle, double *points)
+/* Middle of the points of a group that there are, and their number; *farthest: of any point from a middle, squared */
+static int find_middle(const sd_groups *groups, const sd_spheres *s, int group, double at[3], double *farthest)
 {
-  double farthest = 0.0;
-  for (long g = 0; g < groups->n; g++) {
-    double *at = middle + 3 * g;
-    at[0] = at[1] = at[2] = points[g] = 0.0;
-    for (int i = groups->first[g]; i < groups->first[g + 1]; i++) {
-      if (!(s->a[i] > 0.0)) continue;
-      points[g]++;
-      for (int d = 0; d < 3; d++) at[d] += s->x[3 * (long) i + d];
-    }
-    for (int d = 0; d < 3 && points[g] > 0.0; d++) at[d] /= points[g];
-    for (int i = groups->first[g]; i < groups->first[g + 1]; i++) {
-      const double far = s->a[i] > 0.0 ? sd_distance_squared(at, s->x + 3 * (long) i) : 0.0;
-      farthest = far > farthest ? far : farthest;
-    }
+  int points = 0;
+  at[0] = at[1] = at[2] = 0.0;
+  for (int i = groups->first[group]; i < groups->first[group + 1]; i++) {
+    if (!(s->a[i] > 0.0)) continue;
+    points++;
+    for (int d = 0; d < 3; d++) at[d] += s->x[3 * (long) i + d];
   }
-  return sqrt(farthest);
+  for (int d = 0; d < 3 && points > 0; d++) at[d] /= points;
+  for (int i = groups->first[group]; i < groups->first[group + 1]; i++) {
+    const double far = s->a[i] > 0.0 ? sd_distance_squared(at, s->x + 3 * (long) i) : 0.0;
+    *farthest = far > *farthest ? far : *farthest;
+  }
+  return points;
 }
 
-sd_status sd_ewald_groups_sort(sd_ewald_pairs *p, const sd_groups *groups, int n)
+/* Within which middles of groups are near each other: a hair more, so that rounding of these loses no pair */
+static double reach_of_middles(const sd_ewald_pairs *p)
+{
+  return (p->ewald.range + 2.0 * p->groups.farthest) * (1.0 + 1e-9);
+}
+
+/* Are the rows the points of these groups? Then every group has points, and each row is one that its group had. */
+static int same_rows(const sd_ewald_pairs *p, const sd_groups *groups, int n)
+{
+  const sd_ewald_groups *g = &p->groups;
+  const int all = groups->first[groups->n];
+  int there = 0;
+  if (!(g->reach > 0.0) || g->groups != groups->n || g->points != all || g->ours != n) return 0;
+  for (int i = 0; i < all; i++) there += p->spheres.a[i] > 0.0;
+  int same = there == p->rows && g->cells.rows == groups->n;
+  for (int k = 0; k < g->cells.rows && same; k++) {
+    const int *own = groups->first + g->cells.place[k];
+    same = p->sphere[g->first[k]] >= own[0] && p->sphere[g->first[k + 1] - 1] < own[1];
+  }
+  for (int k = 0; k < p->rows && same && there < all; k++) same = p->spheres.a[p->sphere[k]] > 0.0;
+  return same;
+}
+
+/* Middle of the rows of group k; *farthest as above */
+static void middle_of_rows(const sd_ewald_pairs *p, int k, double at[3], double *farthest)
+{
+  const int begin = p->groups.first[k], end = p->groups.first[k + 1];
+  const double *centre = sd_ewald_centres(p);
+  double squares[SD_GROUP_POINTS] = {0.0};
+  for (long d = 0; d < 3; d++) {
+    const double *x = centre + d * p->rows;
+    at[d] = 0.0;
+    for (int i = begin; i < end; i++) at[d] += x[i];
+    at[d] /= end - begin;
+    for (int i = begin; i < end; i++) squares[i - begin] += (x[i] - at[d]) * (x[i] - at[d]);
+  }
+  for (int i = 0; i < SD_GROUP_POINTS; i++) *farthest = squares[i] > *farthest ? squares[i] : *farthest;
+}
+
+/* The rows and where they are now, in the order of before: do the lists hold? */
+static int lists_hold(sd_ewald_pairs *p, const sd_groups *groups, int n)
 {
   sd_ewald_groups *g = &p->groups;
-  const size_t count = (size_t) groups->n;
-  if (!sd_reserve(&g->middle, sizeof(double), 7 * count + SD_FULL, &g->middle_room) ||
-      !sd_reserve(&g->first, sizeof(int), count + 1, &g->first_room))
-    return SD_ENOMEMORY;
-  double *points = g->middle + 3 * count;
-  g->farthest = find_middles(groups, &p->spheres, g->middle, points);
-  /* a hair more, so that rounding of the middles loses no pair */
-  const double reach = (p->ewald.range + 2.0 * g->farthest) * (1.0 + 1e-9);
-  const sd_status status =
-      sd_ewald_cells_sort(&g->cells, g->middle, points, groups->n, reach, p->turn, points + count);
-  if (status != SD_OK) return status;
+  double moved = 0.0, farthest = 0.0, at[3];
+  if (!same_rows(p, groups, n)) return 0;
+  sd_ewald_pairs_gather(p);
+  for (int k = 0; k < g->cells.rows; k++) {
+    double square = 0.0;
+    middle_of_rows(p, k, at, &farthest);
+    for (long d = 0; d < 3; d++) {
+      const double step = at[d] - g->middle[d * g->cells.rows + k];
+      square += step * step;
+      g->cells.centre[d * g->cells.rows + k] = at[d];
+    }
+    moved = square > moved ? square : moved;
+  }
+  g->farthest = sqrt(farthest);
+  return reach_of_middles(p) + 2.0 * sqrt(moved) <= g->reach;
+}
+
+/* Of groups in order of cells the points */
+static void list_rows(sd_ewald_pairs *p, const sd_groups *groups, int n)
+{
+  sd_ewald_groups *g = &p->groups;
   p->rows = p->n = 0;
   for (int k = 0; k < g->cells.rows; k++) {
     const int group = g->cells.place[k];
@@ -84,6 +133,27 @@ sd_status sd_ewald_groups_sort(sd_ewald_pairs *p, const sd_groups *groups, int n
       }
   }
   g->first[g->cells.rows] = p->rows;
+}
+
+sd_status sd_ewald_groups_sort(sd_ewald_pairs *p, const sd_groups *groups, int n)
+{
+  sd_ewald_groups *g = &p->groups;
+  const size_t count = (size_t) groups->n;
+  if (lists_hold(p, groups, n)) return SD_OK;
+  g->reach = 0.0;
+  if (!sd_reserve(&g->middle, sizeof(double), 7 * count + SD_FULL, &g->middle_room) ||
+      !sd_reserve(&g->first, sizeof(int), count + 1, &g->first_room))
+    return SD_ENOMEMORY;
+  double *points = g->middle + 3 * count, farthest = 0.0;
+  for (int k = 0; k < groups->n; k++)
+    points[k] = find_middle(groups, &p->spheres, k, g->middle + 3 * (long) k, &farthest);
+  g->farthest = sqrt(farthest);
+  const sd_status status = sd_ewald_cells_sort(&g->cells, g->middle, points, groups->n,
+                                               sd_with_skin(reach_of_middles(p)), p->turn, points + count);
+  if (status != SD_OK) return status;
+  memcpy(g->middle, g->cells.centre, 3 * sizeof(double) * (size_t) g->cells.rows);
+  list_rows(p, groups, n);
+  sd_ewald_pairs_gather(p);
   return SD_OK;
 }
 
@@ -93,7 +163,7 @@ typedef struct {
   sd_ewald_pairs *pairs;
   const sd_groups *groups;
   int n;
-  /* neighbours of all rows so far, or pairs of groups */
+  /* candidates, neighbours of all rows or pairs of groups so far */
   long many;
 } finder;
 
@@ -116,7 +186,6 @@ static int ranges_of_points(finder *f, int row, int found)
   g->range[1] = form_of(f, row) < 0 && !is_ghost(f, row) ? g->first[row + 1] : 0;
   for (int k = 0; k < found; k++) {
     const int other = g->near[k];
-    if (is_ghost(f, row) && is_ghost(f, other)) continue;
     if (many > 1 && g->range[2 * many - 1] == g->first[other]) many--;
     else g->range[2 * many] = g->first[other];
     g->range[2 * many + 1] = g->first[other + 1];
@@ -125,14 +194,54 @@ static int ranges_of_points(finder *f, int row, int found)
   return many;
 }
 
-/* Later groups near that of a row, of which there are `most` at most, to g->near, for which there is room */
-static int groups_found(finder *f, int row, int ranges)
+/* Later groups that may get near that of a row; nobody wants pairs of ghosts. */
+static sd_status visit_group(void *ctx, int row, int end, int ranges, long most)
+{
+  (void) end;
+  finder *f = ctx;
+  sd_ewald_groups *g = &f->pairs->groups;
+  const sd_ewald_cells *c = &g->cells;
+  const int ghost = is_ghost(f, row);
+  double x[3];
+  if (!sd_extend(&g->candidate, sizeof(int), (size_t) (f->many + most + SD_FULL), &g->candidate_room))
+    return SD_ENOMEMORY;
+  int *found = g->candidate + f->many;
+  sd_ewald_cells_at(c, row, x);
+  const long all = f->pairs->doubles->search(c->centre, c->rows, c->range, ranges, x, 1, c->reach * c->reach, found);
+  g->from[row] = f->many;
+  for (long k = 0; k < all; k++)
+    if (!ghost || !is_ghost(f, found[k])) g->candidate[f->many++] = found[k];
+  return SD_OK;
+}
+
+static sd_status find_candidates(finder *f)
 {
   sd_ewald_groups *g = &f->pairs->groups;
-  sd_ewald_cells *c = &g->cells;
-  double x[3];
-  sd_ewald_cells_at(c, row, x);
-  return (int) f->pairs->doubles->search(c->centre, c->rows, c->range, ranges, x, 1, c->reach * c->reach, g->near);
+  if (!sd_reserve(&g->from, sizeof(long), (size_t) g->cells.rows + 1, &g->from_room)) return SD_ENOMEMORY;
+  const sd_status status = sd_ewald_cells_walk(&g->cells, 1, visit_group, f);
+  if (status != SD_OK) return status;
+  g->from[g->cells.rows] = f->many;
+  g->groups = f->groups->n;
+  g->points = f->groups->first[g->groups];
+  g->ours = f->n;
+  g->reach = g->cells.reach;
+  return SD_OK;
+}
+
+/* Those of the candidates that are near that of a row now, to g->near, which has room; returns how many */
+static int groups_found(const sd_ewald_pairs *p, int row)
+{
+  const sd_ewald_groups *g = &p->groups;
+  const double reach = reach_of_middles(p);
+  double x[3], y[3];
+  int found = 0;
+  sd_ewald_cells_at(&g->cells, row, x);
+  for (long k = g->from[row]; k < g->from[row + 1]; k++) {
+    sd_ewald_cells_at(&g->cells, g->candidate[k], y);
+    g->near[found] = g->candidate[k];
+    found += sd_distance_squared(x, y) <= reach * reach;
+  }
+  return found;
 }
 
 /* Point by point */
@@ -173,28 +282,25 @@ static unsigned group_points_near(const sd_ewald_pairs *p, int row, int other)
 static sd_status list_groups(finder *f, int row, int found)
 {
   sd_ewald_groups *g = &f->pairs->groups;
-  const int ghost = is_ghost(f, row), itself = !ghost && form_of(f, row) < 0;
+  const int itself = !is_ghost(f, row) && form_of(f, row) < 0;
   if (!sd_extend(&g->pair, sizeof(*g->pair), (size_t) (f->many + found + 1), &g->pair_room)) return SD_ENOMEMORY;
   g->begin[row] = f->many;
   if (itself) g->pair[f->many++] = (sd_near_group){row, 0};
   for (int k = 0; k < found; k++) {
-    if (ghost && is_ghost(f, g->near[k])) continue;
     const unsigned points = group_points_near(f->pairs, g->near[k], row);
     if (points) g->pair[f->many++] = (sd_near_group){g->near[k], points};
   }
   return SD_OK;
 }
 
-static sd_status visit_group(void *ctx, int row, int end, int ranges, long most)
+static sd_status list_row(finder *f, int row)
 {
-  (void) end;
-  finder *f = ctx;
   sd_ewald_groups *g = &f->pairs->groups;
-  const size_t room = (size_t) most + SD_FULL;
-  if (!sd_reserve(&g->near, sizeof(int), room, &g->near_room) ||
-      !sd_reserve(&g->range, sizeof(int), 2 * room, &g->range_room))
+  const size_t most = (size_t) (g->from[row + 1] - g->from[row]) + 1;
+  if (!sd_reserve(&g->near, sizeof(int), most, &g->near_room) ||
+      !sd_reserve(&g->range, sizeof(int), 2 * most, &g->range_room))
     return SD_ENOMEMORY;
-  const int found = groups_found(f, row, ranges);
+  const int found = groups_found(f->pairs, row);
   return f->pairs->by_groups ? list_groups(f, row, found) : list_points(f, row, found);
 }
 
@@ -280,7 +386,9 @@ sd_status sd_ewald_groups_find(sd_ewald_pairs *p, const sd_groups *groups, int n
   finder f = {.pairs = p, .groups = groups, .n = n};
   if (p->by_groups && !sd_reserve(&g->begin, sizeof(long), (size_t) g->cells.rows + 1, &g->begin_room))
     return SD_ENOMEMORY;
-  const sd_status status = sd_ewald_cells_walk(&g->cells, 1, visit_group, &f);
+  sd_status status = g->reach > 0.0 ? SD_OK : find_candidates(&f);
+  f.many = 0;
+  for (int row = 0; row < g->cells.rows && status == SD_OK; row++) status = list_row(&f, row);
   if (p->by_groups) g->begin[g->cells.rows] = f.many;
   else {
     p->bunches = p->begin[p->rows] = p->rows;

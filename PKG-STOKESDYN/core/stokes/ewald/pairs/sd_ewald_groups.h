@@ -13,7 +13,8 @@ SD_BEGIN_C
 /* May these be taken by groups? */
 int sd_ewald_groups_serve(const sd_ewald_pairs *p, const sd_groups *groups);
 
-/* Rows of points by groups in order of cells, to p->sphere. SD_OK or SD_ENOMEMORY. */
+/* Rows of points by groups in order of cells, to p->sphere; of cells of before where the lists of then hold.
+ * SD_OK or SD_ENOMEMORY. */
 sd_status sd_ewald_groups_sort(sd_ewald_pairs *p, const sd_groups *groups, int n);
 
 /* The rows stand: who is near whom, and the blocks. SD_OK or SD_ENOMEMORY. */

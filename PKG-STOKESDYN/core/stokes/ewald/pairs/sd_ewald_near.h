@@ -11,10 +11,18 @@ SD_BEGIN_C
 
 /* Points in groups (sd_ewald_groups.h) */
 typedef struct {
-  /* of the groups: those that take part, in order of cells */
+  /* of the groups: those that take part, in order of cells, and where their middles are now */
   sd_ewald_cells cells;
-  /* [7 groups + SD_FULL] middles, how many points each has, and what the cells need */
+  /* [7 groups + SD_FULL] middles, of the kept lists those of their making [3][rows of cells]; how many points
+   * each has; and what the cells need */
   double *middle;
+  /* kept while nobody moves far in the frame (sd_skin.h), as everybody does when the frame turns: of so many groups
+   * and points, of ours; within which reach, 0: not; later groups with the skin, [rows of cells + 1] where those
+   * of each begin */
+  int groups, points, ours, *candidate;
+  double reach;
+  long *from;
+  size_t candidate_room, from_room;
   /* [rows of cells + 1] first row of each; [..] groups near one; [2 ..] their rows */
   int *first, *near, *range;
   size_t middle_room, first_room, near_room, range_room;
@@ -85,6 +93,9 @@ static inline double sd_ewald_pairs_steps(const sd_ewald_pairs *p)
 {
   return 0x1p30 / p->ewald.range;
 }
+
+/* Rows to their centres, where their spheres are now */
+void sd_ewald_pairs_gather(sd_ewald_pairs *p);
 
 /* Neighbours of a bunch, rows up to `end`, among so many ranges of rows, behind the first `many` of all;
  * returns how many there are then. And the kernels' table: lengths scaled, and times 8 pi. */

@@ -78,18 +78,15 @@ static sd_status sort_spheres(sd_ewald_pairs *p, int n, int n_all)
   return SD_OK;
 }
 
-static void pairs_fill_rows(sd_ewald_pairs *p)
+static void pairs_fill_rows(sd_ewald_pairs *p, int n_all)
 {
-  enum { AHEAD = 12 };
-  double largest = 0.0, *centre = sd_ewald_centres(p);
+  double largest = 0.0;
   p->equal = 1;
-  for (int k = 0; k < p->rows; k++) {
-    const long i = p->sphere[k], later = p->sphere[k + AHEAD < p->rows ? k + AHEAD : k];
-    sd_fetch(p->spheres.x + 3 * later);
-    sd_fetch(p->spheres.a + later);
-    for (int d = 0; d < 3; d++) centre[(long) d * p->rows + k] = sd_ewald_turned(p->spheres.x + 3 * i, p->turn, d);
-    largest = fmax(largest, p->spheres.a[i]);
-    p->equal = p->equal && p->spheres.a[i] == p->ewald.a_ref;
+  for (int i = 0; i < n_all; i++) {
+    const double a = p->spheres.a[i];
+    if (!(a > 0.0)) continue;
+    largest = a > largest ? a : largest;
+    p->equal &= a == p->ewald.a_ref;
   }
   p->scale = largest > 0.0 ? ldexp(1.0, -ilogb(largest)) : 1.0;
   p->numbers->stand(p);
@@ -158,10 +155,11 @@ sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, const sd_
   const int grouped = sd_ewald_groups_serve(p, groups);
   p->spheres = *s;
   p->turn = turn;
+  if (!grouped) p->groups.reach = 0.0; /* the rows will be others */
   if (!ep_make_room(p, n_all)) return SD_ENOMEMORY;
   const sd_status status = grouped ? sd_ewald_groups_sort(p, groups, n) : sort_spheres(p, n, n_all);
   if (status != SD_OK) return status;
-  pairs_fill_rows(p);
+  pairs_fill_rows(p, n_all);
   p->groups.own = 0;
   p->by_groups = grouped && p->kernels->near_groups;
   if (!p->by_groups && (!sd_reserve(&p->begin, sizeof(int), (size_t) p->rows + 1, &p->begin_room) ||

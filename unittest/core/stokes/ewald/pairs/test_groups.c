@@ -35,19 +35,23 @@ static cloud make(double small)
   return c;
 }
 
+static void near_product(sd_ewald_pairs *p, const cloud *c, const sd_groups *groups, int turn, double *u)
+{
+  const sd_spheres spheres = {c->x, c->a, c->w};
+  assert_int_equal(sd_ewald_pairs_place(p, &spheres, groups, N, N_ALL, turn), SD_OK);
+  assert_int_equal(sd_ewald_pairs_load(p, N, c->F, c->F + 3 * N, NULL, NULL), SD_OK);
+  sd_ewald_pairs_apply(p);
+  sd_ewald_pairs_take(p, N, c->F, NULL, NULL, NULL, u);
+}
+
 static void near_part_at(const cloud *c, double origin, const sd_groups *groups, const struct sd_ewald_kernels *kernels,
                          double *u)
 {
   const sd_ewald_box box = {.periodic = 1, .origin = {origin, origin, origin}, .edge = {12, 12, 12}};
   const sd_ewald how = periodic_choose(&box, c->a, N, 3, 1e-4);
-  const sd_spheres spheres = {c->x, c->a, c->w};
   sd_ewald_pairs p = {0};
   sd_ewald_pairs_create(&p, &how, kernels, 3);
-  for (int again = 0; again < 2; again++) /* a second place() finds what the first has left */
-    assert_int_equal(sd_ewald_pairs_place(&p, &spheres, groups, N, N_ALL, 0), SD_OK);
-  assert_int_equal(sd_ewald_pairs_load(&p, N, c->F, c->F + 3 * N, NULL, NULL), SD_OK);
-  sd_ewald_pairs_apply(&p);
-  sd_ewald_pairs_take(&p, N, c->F, NULL, NULL, NULL, u);
+  for (int again = 0; again < 2; again++) near_product(&p, c, groups, 0, u); /* and with what the first has left */
   sd_ewald_pairs_free(&p);
 }
 
@@ -111,6 +115,75 @@ static void any_groups_will_do(void **state)
   }
 }
 
+/* Every shell goes by a step of its own, of at most `far` each way. */
+static void go(cloud *c, double far)
+{
+  uint64_t seed = 5;
+  for (int i = 0; i < ALL; i++) {
+    double step[3];
+    for (int d = 0; d < 3; d++) step[d] = uniform(&seed, -far, far);
+    for (int k = 0; k < 36; k++) c->x[36 * i + k] += step[k % 3];
+  }
+}
+
+/* While nobody moves a point goes, another one instead, both are there, and all of a shell go. */
+static void change(cloud *c, int step)
+{
+  double *one = c->a + 12 * 3 + 5, *other = c->a + 12 * 5 + 2;
+  const double a = c->a[12 * 3];
+  if (step == 10) *one = 0.0;
+  if (step == 11) *other = 0.0;
+  if (step == 11) *one = a;
+  if (step == 12) *other = a;
+  if (step == 13) for (int i = 0; i < 12; i++) c->a[12 * 9 + i] = 0.0;
+}
+
+static void same_as_anew(sd_ewald_pairs *p, const cloud *c, const sd_groups *groups, int turn)
+{
+  static double kept[3 * N], anew[3 * N];
+  double scale = 0.0;
+  sd_ewald_pairs other = {0};
+  sd_ewald_pairs_create(&other, &p->ewald, p->kernels, 3);
+  near_product(p, c, groups, turn, kept);
+  near_product(&other, c, groups, turn, anew);
+  sd_ewald_pairs_free(&other);
+  for (int i = 0; i < 3 * N; i++) scale = fmax(scale, fabs(anew[i]));
+  for (int i = 0; i < 3 * N; i++) CHECK_NEAR(kept[i], anew[i], (p->bytes == sizeof(double) ? 1e-13 : 1e-6) * scale);
+}
+
+/* Lists hold over small steps, as middles of their making say, and are made anew when one shell goes far, others
+ * are ours, the frame turns, or other points are there: they change no velocity, whatever their age. */
+static void lists_of_any_age_are_as_good_as_new(void **state)
+{
+  (void) state;
+  const sd_ewald_box box = {.periodic = 1, .edge = {12, 12, 12}};
+  for (int k = 0; k < 8; k++) {
+    const sd_isa isa = sets[k / 2];
+    if (!sd_isa_supported(isa)) continue;
+    const struct sd_ewald_kernels *kernels = k % 2 ? SD_KERNELS_OF(sd_ewald_single, plain, isa)
+                                                   : SD_KERNELS_OF(sd_ewald, plain, isa);
+    cloud c = make(0.7);
+    const sd_ewald how = periodic_choose(&box, c.a, N, 3, 1e-4);
+    const sd_groups groups = {ALL, c.first, c.form};
+    int made_anew = 0;
+    sd_ewald_pairs p = {0};
+    sd_ewald_pairs_create(&p, &how, kernels, 3);
+    const sd_spheres spheres = {c.x, c.a, c.w};
+    assert_int_equal(sd_ewald_pairs_place(&p, &spheres, &groups, N - 12, N_ALL, 0), SD_OK);
+    same_as_anew(&p, &c, &groups, 0);
+    for (int step = 0; step < 14; step++) {
+      const double stood = p.groups.middle[0];
+      if (step < 9) go(&c, 0.1);
+      else change(&c, step);
+      if (step == 8) for (int i = 0; i < 36; i++) c.x[36 * 7 + i] += 3.0;
+      same_as_anew(&p, &c, &groups, step < 9 ? 0 : 1);
+      made_anew += p.groups.middle[0] != stood;
+    }
+    assert_in_range(made_anew, 3, 10);
+    sd_ewald_pairs_free(&p);
+  }
+}
+
 /* A form is one block: the near part is as symmetric as before. */
 static void near_part_is_symmetric(void **state)
 {
@@ -163,6 +236,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(forms_change_nothing),
       cmocka_unit_test(any_groups_will_do),
+      cmocka_unit_test(lists_of_any_age_are_as_good_as_new),
       cmocka_unit_test(near_part_is_symmetric),
       cmocka_unit_test(hard_places_have_the_same_digits),
   };
