@@ -139,7 +139,8 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair>, public SphCoefficients {
   int displaced_bits = 0;
   bool leapfrog = false, needs_velocity = false, measured = false;
   LAMMPS_NS::bigint dangerous_builds = 0;
-  // Has LAMMPS set up this run? rerun initialises, and then computes the forces of one snapshot after the other.
+  // Has LAMMPS set up this run? rerun initialises, and then computes the forces of one snapshot after
+  // the other.
   bool begun = false;
   Neighbourhood neighbourhood;
   // comm_modify vel was no

@@ -1,6 +1,6 @@
-/* What pair_style sph/artVisc/tensCorr and its pair_coeff say: the terms of the model, and numbers for each pair
- * of types. Those that are not given follow from the numbers of both types, from fix property/global and from the
- * pair_style. See doc/pair_sph_artvisc_tenscorr.md. */
+/* What pair_style sph/artVisc/tensCorr and its pair_coeff say: the terms of the model, and numbers for each
+ * pair of types. Those that are not given follow from the numbers of both types, from fix property/global
+ * and from the pair_style. See doc/pair_sph_artvisc_tenscorr.md. */
 #ifndef SD_SPH_COEFFICIENTS_H
 #define SD_SPH_COEFFICIENTS_H
 

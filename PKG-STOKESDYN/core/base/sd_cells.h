@@ -43,9 +43,9 @@ void sd_cells_add(sd_cells *c, const double *x, int i);
  * index. SD_OK or SD_ENOMEMORY. */
 sd_status sd_cells_fill(sd_cells *c, const double *x, int n, double side);
 
-/* order [n]: the points x [3n] cell by cell, so that near ones stand near each other in memory; x of the cells
- * goes slowest and z fastest, and a cell has its points in order of index. A cell has eight points in the mean,
- * and there are at most n along an edge. SD_OK or SD_ENOMEMORY. */
+/* order [n]: the points x [3n] cell by cell, so that near ones stand near each other in memory; x of the
+ * cells goes slowest and z fastest, and a cell has its points in order of index. A cell has eight points
+ * on average, and there are at most n along an edge. SD_OK or SD_ENOMEMORY. */
 sd_status sd_cells_sort(const double *x, int n, int *order);
 
 /* A walk over the points of all cells that the cube of half side radius around a place meets:

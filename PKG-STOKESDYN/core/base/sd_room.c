@@ -21,7 +21,8 @@ static void ask_for_pages(void *block, size_t bytes)
   if (end > first) (void) madvise((void *) first, end - first, MADV_HUGEPAGE);
 }
 
-/* The last page is a large one if at least half of it is wanted: small ones take no memory before they are written to. */
+/* The last page is a large one if at least half of it is wanted: small ones take no memory before they are
+ * written to. */
 static void *room_of(size_t bytes)
 {
   if (bytes < page / 2 || bytes > SIZE_MAX - page) return malloc(bytes);

@@ -32,9 +32,9 @@ class Halo {
    * them, that holds this rank's rows x [3n]; they are there when extend() has brought them. On all ranks
    * together. false: more copies of this rank's spheres than 1e7 and than 1000 for each. */
   bool find(const Lattice &lattice, double reach, const std::vector<double> &x, Whom whom = OTHERS);
-  /* The same, or those found before and in their order, as long as they hold: the lattice is the same, those whom
-   * a rank gets, and the rows are as many, and none stands farther than half a skin (sd_skin.h) from where it did
-   * then */
+  /* The same, or the copies found before, in their order, as long as they hold: the lattice and `whom` are
+   * the same, there are as many rows, and none stands farther than half a skin (sd_skin.h) from where it
+   * stood then */
   bool find_or_keep(const Lattice &lattice, double reach, const std::vector<double> &x, Whom whom = OTHERS);
   /* The same within `reach` of what is from lo [3] to hi [3], other on each rank and nothing where
    * lo > hi; this rank's own spheres are among them. They are there at once. */
@@ -70,8 +70,8 @@ class Halo {
   /* the spheres of this rank that go, partner by partner, and by how many edges each is moved */
   std::vector<int> sphere, edges;
   mutable std::vector<double> outbox;
-  /* of copies that may be kept: within which reach they were found, 0: they may not; who, in which lattice, and
-   * where the rows of this rank stood */
+  /* of copies that may be kept: within which reach they were found, 0: they may not; which, in which lattice,
+   * and where the rows of this rank stood */
   double reached = 0.0;
   Whom whom_then = OTHERS;
   Lattice lattice_then = {};

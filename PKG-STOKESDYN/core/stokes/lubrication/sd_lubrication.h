@@ -105,8 +105,9 @@ typedef struct {
 /* The spheres have moved. On all ranks together. SD_OK; SD_ENOMEMORY; SD_EOUTSIDE: radii that
  * `functions` does not have; SD_ENOTFINITE; that of refresh. */
 sd_status sd_lubrication_place(sd_lubrication *L, const sd_lubrication_scene *scene);
-/* What sphere i < n resists alone, as a wall makes it: L_ii += B [36], carried += E [6]. After place,
- * which forgets it. */
+/* What sphere i < n resists alone, as a wall makes it: L_ii += B [36], carried += E [6]. B is symmetric:
+ * of its blocks FU and TW the lower triangles are read, and FW in place of TU. After place, which forgets
+ * it. */
 void sd_lubrication_add_own(sd_lubrication *L, int i, const double B[36], const double E[6]);
 /* B += L_ij of a pair, row-major, rows F T, columns U W */
 void sd_lubrication_add_block(const sd_lubrication_link *l, double B[36]);

@@ -13,7 +13,8 @@ static inline void add_symmetric(const double B[6], const double V[3], double ou
 }
 
 /* out += L_ii V, with X_ii, its own, if there is one */
-static inline void film_own_times(const double own[SD_LUBRICATION_OWN], const double *X, const double V[6], double out[6])
+static inline void film_own_times(const double own[SD_LUBRICATION_OWN], const double *X, const double V[6],
+                                  double out[6])
 {
   const double *FW = own + 12;
   double FU[6];

@@ -1,10 +1,11 @@
-/* Lists of who is near whom hold for some time when they are made with a skin: beyond the reach they have those
- * who may get there. As long as nobody stands farther than half a skin from where he stood when a list was made,
- * nobody is missing, whoever they are and whyever they moved: whoever keeps a list also keeps where they stood
- * then, and nobody has to tell him that it is out of date.
+/* A list of who is near whom holds for some time if it is made with a skin: it has the pairs within the
+ * reach, and those a little farther apart, which may come within it. As long as no sphere stands farther than
+ * half the skin from where it stood when the list was made, no pair is missing, whatever has moved them.
+ * Who keeps a list keeps these places too, and compares: nobody has to tell him that the list is out of
+ * date.
  *
- * A part of the reach: with more a list holds longer and has more pairs that are too far apart, (1 + part)^3
- * times as many. */
+ * The skin is a part of the reach. With more of it a list holds longer and has more pairs that are too far
+ * apart, (1 + part)^3 times as many. */
 #ifndef SD_SKIN_H
 #define SD_SKIN_H
 

@@ -1,5 +1,5 @@
 /* Kernels of the engine ewald, of doubles; sd_ewald_single_kernels.c: the same of floats */
-#include "sd_ewald_internal.h"
+#include "sd_ewald_kernels.h"
 #include "sd_rows.h"
 #include "sd_steps.h"
 #include "sd_tensor_lanes.h"

@@ -1,6 +1,6 @@
-/* The kernel of the near part where points stand in groups: a group is the bunch, and those points of others that
- * are near it are taken vector by vector, wherever they are. Nobody keeps a list of points: it is made of bits, a
- * group at a time. Included by sd_ewald_kernels.c. */
+/* The kernel of the near part where points stand in groups: a group is the bunch, and those points of others
+ * that are near it are taken vector by vector, wherever they are. Nobody keeps a list of points: it is made
+ * of bits, a group at a time. Included by sd_ewald_kernels.c. */
 
 #if LANES >= 16
 
@@ -25,8 +25,8 @@ INLINE void near_within(int equal, int degree, const sd_near_part *p, const near
 }
 
 /* The group and so many points of others */
-INLINE void near_between(int equal, int degree, const sd_near_part *p, const near_constants *all_pairs, const int *j,
-                         near_bunch *b)
+INLINE void near_between(int equal, int degree, const sd_near_part *p, const near_constants *all_pairs,
+                         const int *j, near_bunch *b)
 {
   vec at[8], v[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
   gather_eight(p->row, j, at);

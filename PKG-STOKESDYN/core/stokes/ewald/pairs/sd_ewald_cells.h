@@ -5,8 +5,8 @@
  * first: later rows near it stand in few ranges of rows, columns of cells along z. Rows that follow each
  * other and are close may be asked about in bunches: what is near one is near most of the others.
  *
- * Rows stand in a frame that is turned cyclically: its direction d is d + turn of the places. So they are in the
- * order of a grid in that frame. */
+ * Rows stand in a frame that is turned cyclically: its direction d is d + turn of the places. So they are
+ * in the order of a grid in that frame. */
 #ifndef SD_EWALD_CELLS_H
 #define SD_EWALD_CELLS_H
 

@@ -3,7 +3,7 @@
 #ifndef SD_EWALD_IMAGE_PAIRS_H
 #define SD_EWALD_IMAGE_PAIRS_H
 
-#include "sd_ewald_internal.h"
+#include "sd_ewald_kernels.h"
 #include "sd_status.h"
 
 SD_BEGIN_C

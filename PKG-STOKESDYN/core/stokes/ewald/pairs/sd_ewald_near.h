@@ -3,7 +3,7 @@
 #define SD_EWALD_NEAR_H
 
 #include "sd_ewald_cells.h"
-#include "sd_ewald_internal.h"
+#include "sd_ewald_kernels.h"
 #include "sd_status.h"
 #include "sd_world.h"
 
@@ -16,9 +16,9 @@ typedef struct {
   /* [7 groups + SD_FULL] middles, of the kept lists those of their making [3][rows of cells]; how many points
    * each has; and what the cells need */
   double *middle;
-  /* kept while nobody moves far in the frame (sd_skin.h), as everybody does when the frame turns: of so many groups
-   * and points, of ours; within which reach, 0: not; later groups with the skin, [rows of cells + 1] where those
-   * of each begin */
+  /* lists that are kept while no group moves far in the frame (sd_skin.h), as all do when the frame turns: of
+   * how many groups, points and points of ours; within which reach, 0: none is kept; later groups within
+   * reach and skin; [rows of cells + 1] where those of each begin */
   int groups, points, ours, *candidate;
   double reach;
   long *from;

@@ -14,8 +14,8 @@ SD_BEGIN_C
 void sd_ewald_pairs_create(sd_ewald_pairs *p, const sd_ewald *e,
                            const struct sd_ewald_kernels *kernels, int width);
 
-/* n spheres of ours and the ghosts after them, n_all together, in groups or not; targets in the order of a frame
- * with this turn (sd_ewald_cells.h). SD_OK or SD_ENOMEMORY. */
+/* n spheres of ours and the ghosts after them, n_all together, in groups or not; targets in the order of a
+ * frame with this turn (sd_ewald_cells.h). SD_OK or SD_ENOMEMORY. */
 sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, const sd_groups *groups, int n,
                                int n_all, int turn);
 

@@ -234,7 +234,7 @@ sd_status sd_ewald_prepare(const sd_ewald_box *box, const sd_ewald_class *all, d
 }
 
 /* Is single precision enough for a splitting and its spheres? The tolerance may be off by its last digits.
- * Coordinates have steps of range/2^30 then (sd_ewald_internal.h): a millionth of a radius at most, which
+ * Coordinates have steps of range/2^30 then (sd_ewald_kernels.h): a millionth of a radius at most, which
  * spheres in touch feel. Floats hold squares of lengths, and of their inverses, from 1e-38 to 1e38. */
 static int floats_do(const sd_ewald *e, const sd_ewald_class *s)
 {

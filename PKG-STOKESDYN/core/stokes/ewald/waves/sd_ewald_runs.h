@@ -4,7 +4,7 @@
 #ifndef SD_EWALD_RUNS_H
 #define SD_EWALD_RUNS_H
 
-#include "sd_ewald_internal.h"
+#include "sd_ewald_kernels.h"
 #include "sd_status.h"
 
 SD_BEGIN_C

@@ -10,7 +10,7 @@
 #ifndef SD_EWALD_WAVES_H
 #define SD_EWALD_WAVES_H
 
-#include "sd_ewald_internal.h"
+#include "sd_ewald_kernels.h"
 #include "sd_ewald_runs.h"
 #include "sd_grid.h"
 #include "sd_random.h"

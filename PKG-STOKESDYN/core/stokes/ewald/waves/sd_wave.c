@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "sd_constants.h"
-#include "sd_ewald_internal.h"
+#include "sd_ewald_kernels.h"
 #include "sd_image_kernel.h"
 #include "sd_padded.h"
 #include "sd_radial.h"

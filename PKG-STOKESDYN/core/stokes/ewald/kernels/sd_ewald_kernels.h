@@ -1,7 +1,7 @@
 /* Between the engine and its kernels, of which each instruction set has its own build; and each of those
  * one for doubles and one for floats (sd_ewald.single), whose numbers are behind pointers to void. */
-#ifndef SD_EWALD_INTERNAL_H
-#define SD_EWALD_INTERNAL_H
+#ifndef SD_EWALD_KERNELS_H
+#define SD_EWALD_KERNELS_H
 
 #include "sd_image_kernel.h"
 #include "sd_image_wave.h"
