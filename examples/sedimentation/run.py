@@ -312,7 +312,8 @@ def draw_ladder(times, done, ladder, path):
         rigid = "rigid_clumps" in name
         right.loglog(time_, max(errors), marker, color=colour, ms=9, mfc=colour if rigid else "white", mew=1.5)
         right.loglog([time_, time_], [np.mean(errors), max(errors)], "-", color=colour, lw=1)
-        right.annotate(label if rigid else "solved every step", (time_, max(errors)), xytext=(9, 4 if rigid else -12),
+        up = -12 if not rigid else -3 if level.isdigit() and level != "1" else 8    # clear of marks
+        right.annotate(label if rigid else "solved every step", (time_, max(errors)), xytext=(9, up),
                        textcoords="offset points", fontsize=9)
     right.set_xlim(10, 2e4)
     right.set_ylim(0.03, 30)

@@ -97,7 +97,7 @@ def jfsd(scene):
 
 # On PyPI: its cases, and the most spheres that do not take hours or, of jfsd, which keeps the grid points around each,
 # more than 20 GB
-PROGRAMS = {"fmm3dpy": (fmm3d, 100000), "pystokes": (pystokes, 100000), "jfsd": (jfsd, 10000)}
+PROGRAMS = {"fmm3dpy": (fmm3d, 100000), "pystokes": (pystokes, 10000), "jfsd": (jfsd, 10000)}
 
 
 # --- measuring ---

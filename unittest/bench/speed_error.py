@@ -6,14 +6,8 @@
 
 bench_speed_error.c has the scenes and what errors are measured against. Processor time on one core. Measured numbers
 go to speed_error.csv and the picture to speed_error.png, beside this file; --draw: the picture alone, of the numbers
-that are there. The other programs (peers.py) are measured where Python has them; the rows of those that it has not
-stay in peers.csv as they are:
-
-    python3 -m venv peers
-    peers/bin/pip install numpy scipy cython setuptools pytest matplotlib fmm3dpy
-    peers/bin/pip install --no-build-isolation pystokes
-    peers/bin/pip install jfsd; peers/bin/pip install "jax==0.4.38" "jaxlib==0.4.38"    # jfsd's own jax is gone
-    peers/bin/python unittest/bench/speed_error.py"""
+that are there. The other programs (peers.py) are measured where Python has them, as that which accuracy_times.sh
+makes; the rows of those that it has not stay in peers.csv as they are."""
 import argparse
 import csv
 import pathlib
