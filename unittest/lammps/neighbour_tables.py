@@ -14,12 +14,27 @@ HEADINGS = {"stokes": "### Beside pair_style stokes_dynamics and its fixes", "sp
             "vans": "### Beside fix hydro/vans"}
 
 STRINGS = r"(?:\"(?:[^\"\\]|\\.)*\"\s*)+"
-ROW = re.compile(rf"\{{N::(?P<kind>\w+),\s*(?P<styles>{STRINGS}),\s*(?P<where>[\w\s|]+?),"
+ROW = re.compile(rf"\{{N::(?P<kind>\w+),\s*(?P<styles>{STRINGS}|[A-Z]+),\s*(?P<where>[\w\s|]+?),"
                  rf"\s*N::(?P<verdict>\w+),\s*(?P<why>{STRINGS})")
 
 
 def joined(strings):
     return "".join(re.findall(r"\"((?:[^\"\\]|\\.)*)\"", strings))
+
+
+def rows(room):
+    """Of every row: kind, styles, facts, verdict, why. Styles stand in the row, or in the constant that it names."""
+    for path in sorted((PACKAGE / room).rglob("neighbours*.cpp")):
+        text = path.read_text()
+        for row in ROW.finditer(text):
+            named = re.search(rf"static const char {re.escape(row['styles'])}\[\] = ({STRINGS});", text)
+            yield (row["kind"], joined(named.group(1) if named else row["styles"]), row["where"], row["verdict"],
+                   joined(row["why"]))
+
+
+def names_of_rows(room):
+    """Kind and styles, facts, verdict"""
+    return [(f"{kind} {styles}", where, verdict) for kind, styles, where, verdict, _ in rows(room)]
 
 
 def facts(room):
@@ -33,14 +48,12 @@ def facts(room):
 
 def rows_of_code(room):
     """Every row, in its order and in the words of the page."""
-    words, rows = facts(room), []
-    for path in sorted((PACKAGE / room).rglob("neighbours*.cpp")):
-        for row in ROW.finditer(path.read_text()):
-            where = [] if row["where"] == "0" else [words[name.strip()] for name in row["where"].split("|")]
-            styles = " ".join(f"`{style}`" for style in joined(row["styles"]).split())
-            what = ", ".join([f"{KINDS[row['kind']]} {styles}"] + where)
-            rows.append(f"**{VERDICTS[row['verdict']]}**: {what}: {joined(row['why']).replace('{}', '...')}")
-    return rows
+    words, entries = facts(room), []
+    for kind, styles, where, verdict, why in rows(room):
+        of_run = [] if where == "0" else [words[name.strip()] for name in where.split("|")]
+        what = ", ".join([f"{KINDS[kind]} " + " ".join(f"`{style}`" for style in styles.split())] + of_run)
+        entries.append(f"**{VERDICTS[verdict]}**: {what}: {why.replace('{}', '...')}")
+    return entries
 
 
 def rows_of_page(room):

@@ -27,6 +27,7 @@ namespace StokesDyn {
 
 // --- what the name of a style does not tell ------------------------------------------------------
 
+/* Those whose settings a restart file tells in the order of Contact */
 static const char CONTACTS[] = "gran/hooke gran/hooke/history gran/hertz/history";
 
 /* false: it does not tell */
@@ -305,10 +306,10 @@ const std::vector<Neighbour> stokes_neighbours = {
      "fluid_velocity box if the fluid is to be sheared", remaps_v, N::ANYWHERE},
 
     // forces by the velocities of the step before
-    {N::PAIR, "gran/hooke gran/hooke/history gran/hertz/history", OVERDAMPED, N::ERROR,
+    {N::PAIR, CONTACTS, OVERDAMPED, N::ERROR,
      "damps its contacts (gamma {}), which would depend on the velocities of the step before: use "
      "gamma_n 0, gamma_t 0 (or NULL with gamma_n 0) and dampflag 0", contact_damps},
-    {N::PAIR, "gran/hooke gran/hooke/history gran/hertz/history", OVERDAMPED | NOISE, N::ERROR,
+    {N::PAIR, CONTACTS, OVERDAMPED | NOISE, N::ERROR,
      "has friction ({}), which would depend on velocities without noise: use 0", contact_rubs},
     {N::PAIR, "granular", OVERDAMPED, N::WARNING,
      "must have no damping (gamma 0), which would depend on the velocities of the step before; "

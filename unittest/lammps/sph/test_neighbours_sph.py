@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from neighbour_tables import PACKAGE, ROW, joined
+from neighbour_tables import names_of_rows
 from system import LammpsError, Simulation
 
 MOVE = "fix move ours nve/sph"
@@ -117,12 +117,6 @@ ELSEWHERE = {("FIX rheo*", "0"): ("fix", "rheo"),
              ("FIX rigid*", "TENSION"): ("fix", "rigid")}    # test_sph_tension.py
 
 
-def rows(room):
-    for path in sorted((PACKAGE / room).rglob("neighbours*.cpp")):
-        for row in ROW.finditer(path.read_text()):
-            yield f"{row['kind']} {joined(row['styles'])}", row["where"], row["verdict"]
-
-
 def ids(case):
     return re.sub(r"\W+", "-", f"{case[1]} {case[-1]}")
 
@@ -147,7 +141,7 @@ def said(tmp_path, lines, steps=0):
 @pytest.mark.parametrize("case", BESIDE, ids=ids)
 def test_a_row_speaks_of_particles_of_ours(tmp_path, case, ours):
     row, facts, lines, message = case
-    verdict = {(row, where): verdict for row, where, verdict in rows("sph")}[(row, facts)]
+    verdict = {(row, where): verdict for row, where, verdict in names_of_rows("sph")}[(row, facts)]
     error, warnings = said(tmp_path, lines(ours))
     if ours:
         assert message in (error if verdict == "ERROR" else warnings), (error, warnings)
@@ -164,8 +158,9 @@ def test_who_moves_or_is_a_wall_is_no_dynamic_group(tmp_path, case):
 
 def test_every_row_has_a_case(tmp_path):
     tested = {case[:2] for case in BESIDE + DYNAMICS}
-    assert not [row for row in rows("sph") if row[:2] not in tested and row[2] != "FINE" and row[:2] not in ELSEWHERE]
-    assert [row for row in rows("vans") if row[2] != "FINE"] == [
+    assert not [row for row in names_of_rows("sph")
+                if row[:2] not in tested and row[2] != "FINE" and row[:2] not in ELSEWHERE]
+    assert [row for row in names_of_rows("vans") if row[2] != "FINE"] == [
         # test_vans_coupling.py
         ("FIX wall/reflect*", "LANGEVIN", "WARNING"), ("FIX freeze setforce planeforce lineforce", "0", "WARNING")]
 

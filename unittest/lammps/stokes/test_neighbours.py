@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from neighbour_tables import KINDS, PACKAGE, ROW, joined
+from neighbour_tables import KINDS, names_of_rows
 from system import LammpsError, lmp, there
 from test_loading import lammps_source
 
@@ -178,10 +178,6 @@ ANYWHERE = [
     ("COMPUTE pressure*", "0", fixed("thermo_style custom step press", INERTIA),
      "compute thermo_press of style pressure knows nothing of the forces"),
 ]
-def rows():
-    for path in sorted((PACKAGE / "stokes").rglob("neighbours*.cpp")):
-        for row in ROW.finditer(path.read_text()):
-            yield f"{row['kind']} {joined(row['styles'])}", row["where"], row["verdict"]
 
 
 def ids(case):
@@ -207,7 +203,7 @@ def said(simulation, tmp_path, lines, steps=2):
 @pytest.mark.parametrize("case", CASES + ANYWHERE, ids=ids)
 def test_a_row_speaks_of_atoms_of_ours(simulation, tmp_path, case, ours):
     row, facts, lines, message = case
-    verdicts = {verdict for r, where, verdict in rows() if (r, where) == (row, facts)}
+    verdicts = {verdict for r, where, verdict in names_of_rows("stokes") if (r, where) == (row, facts)}
     assert verdicts
     # LAMMPS of today divides by the moment of inertia of one atom, 0, and loses the atoms of a rigid body with langevin
     # one time in six
@@ -222,7 +218,7 @@ def test_a_row_speaks_of_atoms_of_ours(simulation, tmp_path, case, ours):
 
 def test_every_row_has_a_case():
     tested = {case[:2] for case in CASES + ANYWHERE}
-    told = [row for row in rows() if row[2] != "FINE"]
+    told = [row for row in names_of_rows("stokes") if row[2] != "FINE"]
     assert {row[:2] for row in told} == tested | {("PAIR hybrid/scaled*", "0")}
     assert all(kind.split()[0] in KINDS for kind, _ in tested)
 
@@ -302,7 +298,7 @@ def test_a_warning_is_given_once(simulation, tmp_path):
 @pytest.mark.parametrize("case", [CASES[0], next(case for case in CASES if "gravity" in case[0])], ids=ids)
 def test_two_ranks_say_the_same(tmp_path, case):
     """The group is on one rank only, and so is the clump."""
-    error = dict(((row, where), verdict) for row, where, verdict in rows())[case[:2]] == "ERROR"
+    error = dict(((row, where), verdict) for row, where, verdict in names_of_rows("stokes"))[case[:2]] == "ERROR"
     for ours in (True, False):
         finished = lmp(tmp_path, ["processors 2 1 1"] + case[2](ours) + ["run 1"], ranks=2,
                        succeed=not (ours and error))
