@@ -23,7 +23,7 @@ using namespace StokesDyn;
 static constexpr double MOST = 0.65, CLOSE = 0.74;
 
 FixSphGrains::FixSphGrains(LAMMPS *lmp, int narg, char **arg) :
-    SphFix(lmp, narg, arg), rows(1), shown(4), end(lmp)
+    SphFix(lmp, narg, arg), rows(1), shown(4), end(lmp), around(lmp)
 {
   if (!atom->radius_flag || !atom->rmass_flag)
     voice.fail("atoms have no radius and no mass of their own: use atom_style hybrid sph sphere");
@@ -63,8 +63,7 @@ FixSphGrains::FixSphGrains(LAMMPS *lmp, int narg, char **arg) :
   });
   if (sd_drag_of_bed(law.drag.law)) {
     in.require(!in.given("hindrance"),
-               "keyword hindrance: ergun, gidaspow, beetstra and koch_hill have the neighbours of "
-               "a grain in them: "
+               "keyword hindrance: ergun, gidaspow, beetstra and koch_hill have the neighbours of a grain in them: "
                "leave hindrance out");
     law.drag.hindrance = SD_HINDRANCE_OWN;
   }
@@ -76,11 +75,6 @@ FixSphGrains::FixSphGrains(LAMMPS *lmp, int narg, char **arg) :
   global_freq = 1;
   extvector = 0;
   comm_forward = comm_reverse = 3;
-}
-
-FixSphGrains::~FixSphGrains()
-{
-  sd_cells_free(&cells);
 }
 
 void FixSphGrains::parse_hindrance(Keywords &in)
@@ -171,29 +165,19 @@ void FixSphGrains::check_scene()
                " of its group has a type of pair_style sph/artVisc/tensCorr, which "
                "computes it as water: give grains a type of their own, without pair_coeff ... "
                "sph/artVisc/tensCorr");
-  double least = HUGE_VAL, most = 0.0, mu = 0.0, diameter = 0.0;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (pair->is_particle(i)) {
-      const double h = pair->smoothing_length(atom->type[i]);
-      least = std::min(least, h);
-      most = std::max(most, h);
-      if (!pair->is_of_wall(i)) mu = std::max(mu, pair->viscosity(i));
-    } else if (atom->mask[i] & groupbit)
-      diameter = std::max(diameter, 2.0 * atom->radius[i]);
-  }
-  least = smallest_of_all(world, least);
-  most = largest_of_all(world, most);
+  law.h = pair->one_smoothing_length(voice);
+  if (law.h == 0.0) voice.fail("there is no particle of pair_style sph/artVisc/tensCorr");
+  double mu = 0.0, diameter = 0.0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (!pair->is_particle(i))
+      diameter = std::max(diameter, atom->mask[i] & groupbit ? 2.0 * atom->radius[i] : 0.0);
+    else if (!pair->is_of_wall(i))
+      mu = std::max(mu, pair->viscosity(i));
   diameter = largest_of_all(world, diameter);
   law.eta = viscosity > 0.0 ? viscosity : largest_of_all(world, mu);
-  if (most == 0.0) voice.fail("there is no particle of pair_style sph/artVisc/tensCorr");
   if (!(law.eta > 0.0))
-    voice.fail("keyword viscosity is required: drag needs the dynamic viscosity of the water, and "
-               "pair_style "
+    voice.fail("keyword viscosity is required: drag needs the dynamic viscosity of the water, and pair_style "
                "sph/artVisc/tensCorr has none (its keyword viscosity)");
-  if (most > least * (1.0 + 1e-9))
-    voice.fail("types of pair_style sph/artVisc/tensCorr have smoothing lengths from " +
-               text(least) + " to " + text(most) + ": it needs one h for all of them");
-  law.h = least;
   if (is_too_large(diameter)) voice.fail(says_too_large(diameter));
   look_at_strangers();
 }
@@ -203,27 +187,21 @@ void FixSphGrains::check_scene()
 void FixSphGrains::check_fractions()
 {
   largest = 0.0;
-  const auto beside_wall = [this](size_t j) {
-    return std::any_of(&particle[first[j]], &particle[first[j + 1]], [this](int p) {
-      return walls[p];
-    });
-  };
-  for (size_t j = 0; j < grains.size(); j++) {
+  for (size_t j = 0; j < around.grains.size(); j++) {
     largest = std::max(largest, mean_phi[j]);
     if (is_too_large(2.0 * a[j])) voice.at_step().fail_one(says_too_large(2.0 * a[j]));
-    const double most = update->setupflag && !beside_wall(j) ? MOST : CLOSE;
+    const double most = update->setupflag && !around.is_beside_wall(j) ? MOST : CLOSE;
     if (mean_phi[j] > most)
       voice.at_step().fail_one("the volume fraction of grains around atom " +
-                               std::to_string(atom->tag[grains[j]]) + " is " + text(mean_phi[j]) +
-                               "; above " + text(most) +
-                               " no drag law holds, and spheres "
-                               "would overlap: use stiffer contacts, or fewer or smaller grains");
+                               std::to_string(atom->tag[around.grains[j]]) + " is " + text(mean_phi[j]) +
+                               "; above " + text(most) + " no drag law holds, and spheres would overlap: use "
+                               "stiffer contacts, or fewer or smaller grains");
   }
-  for (size_t p = 0; p < points.size(); p++)
-    if (phi[points[p]] > 0.9)
+  for (size_t p = 0; p < around.points.size(); p++)
+    if (phi[around.points[p]] > 0.9)
       voice.at_step().fail_one(
-          "grains fill " + text(phi[points[p]]) + " of the water at atom " +
-          std::to_string(atom->tag[points[p]]) +
+          "grains fill " + text(phi[around.points[p]]) + " of the water at atom " +
+          std::to_string(atom->tag[around.points[p]]) +
           ": they overlap, or the spacing of the water is too wide "
           "for its h: use stiffer contacts, fewer or smaller grains, or a larger h");
 }
@@ -231,8 +209,8 @@ void FixSphGrains::check_fractions()
 /* Drag on the members of rigid bodies is explicit (find_held): k/M is their rate. */
 void FixSphGrains::check_bodies(const std::vector<double> &k)
 {
-  for (size_t j = 0; j < grains.size(); j++) {
-    const int i = grains[j];
+  for (size_t j = 0; j < around.grains.size(); j++) {
+    const int i = around.grains[j];
     if (!(atom->mask[i] & body_bits) || update->dt * k[j] <= atom->rmass[i]) continue;
     voice.at_step().fail_one("atom " + std::to_string(atom->tag[i]) +
                              " is of a rigid body, on which drag is explicit: the time step " + text(update->dt) +

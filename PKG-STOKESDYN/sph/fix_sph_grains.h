@@ -7,6 +7,7 @@
 #include "end_of_run.h"
 #include "sd_sph_grains.h"
 #include "sph.h"
+#include "water_around.h"
 
 #include <vector>
 
@@ -17,7 +18,6 @@ class FixSphGrains : public SphFix {
   static constexpr const char *STYLE = "sph/grains";
 
   FixSphGrains(LAMMPS_NS::LAMMPS *, int, char **);
-  ~FixSphGrains() override;
   int setmask() override;
   void init() override;
   void setup_pre_exchange() override;
@@ -68,15 +68,11 @@ class FixSphGrains : public SphFix {
   bool resumes() const;
 
   // a step
-  sd_cells cells = {};
-  LAMMPS_NS::bigint list_of = -1;
-  // the particles that fill the cells, as atoms; the grains of this rank
-  std::vector<int> points, grains, first, particle, walls;
-  std::vector<double> phi, mean_phi, moved, places, grain_places, volume, weight, wet, own;
+  WaterAround around;
+  std::vector<double> phi, mean_phi, moved, volume, wet, own;
   // radius, volume, mass: HUGE_VAL of those that forces do not move
   std::vector<double> a, V, M;
   double total[3] = {0.0, 0.0, 0.0}, largest = 0.0;
-  sd_sph_around around() { return {(int) grains.size(), first.data(), particle.data(), weight.data()}; }
   sd_sph_grains are_grains() const { return {a.data(), V.data(), wet.data()}; }
   void check_scene();
   void look_at_strangers();
@@ -87,13 +83,8 @@ class FixSphGrains : public SphFix {
   void weigh();
   void sum_fractions();
   void displace();
-  void list_particles();
-  void look_at_places();
   void check_fractions();
   void check_bodies(const std::vector<double> &k);
-  std::vector<double> at_points(const std::vector<double> &of_atoms, int columns) const;
-  std::vector<double> at_atoms(const std::vector<double> &of_points, int columns) const;
-  std::vector<double> mean_of(const std::vector<double> &of_atoms, int columns);
   void stresses(std::vector<double> &F);
   /* velocities [3 grains] */
   struct Slip {

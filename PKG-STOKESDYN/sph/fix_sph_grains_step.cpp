@@ -1,18 +1,14 @@
-/* Of fix sph/grains: a step. Who is around whom, the volume fraction, the flux of water and grains,
- * stresses and drag; rows of atoms, of points and of grains. */
+/* Of fix sph/grains: a step. The volume fraction, the flux of water and grains, stresses and drag. */
 #include "fix_sph_grains.h"
 
 #include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
 
 #include "atom.h"
-#include "comm.h"
-#include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
@@ -28,51 +24,10 @@ void FixSphGrains::recall()
   forward(phi.data(), 1);
 }
 
-/* Those of the pair style around each grain: a list that lasts as long as LAMMPS's. */
-void FixSphGrains::list_particles()
-{
-  points.clear();
-  grains.clear();
-  for (int i = 0; i < atom->nlocal + atom->nghost; i++)
-    if (pair->is_particle(i))
-      points.push_back(i);
-    else if (i < atom->nlocal && (atom->mask[i] & groupbit))
-      grains.push_back(i);
-  look_at_places();
-  sd_cells_free(&cells);
-  cells = {};
-  const double reach = 2.0 * law.h + neighbor->skin;
-  if (sd_cells_fill(&cells, places.data(), (int) points.size(), 0.5 * reach) != SD_OK)
-    throw std::bad_alloc();
-  first.resize(grains.size() + 1);
-  const auto look = [&](int *into) {
-    sd_sph_look_around(&cells, places.data(), (int) grains.size(), grain_places.data(), reach,
-                       first.data(), into);
-  };
-  look(nullptr);
-  particle.resize(first.back() + 1);
-  look(particle.data());
-  walls.resize(points.size());
-  for (size_t p = 0; p < points.size(); p++) walls[p] = pair->is_of_wall(points[p]);
-  list_of = neighbor->lastcall;
-}
-
-void FixSphGrains::look_at_places()
-{
-  places.resize(3 * points.size() + 1);
-  grain_places.resize(3 * grains.size() + 1);
-  for (size_t p = 0; p < points.size(); p++) std::copy_n(atom->x[points[p]], 3, &places[3 * p]);
-  for (size_t j = 0; j < grains.size(); j++)
-    std::copy_n(atom->x[grains[j]], 3, &grain_places[3 * j]);
-}
-
 void FixSphGrains::find_fractions()
 {
   recall();
-  if (neighbor->ago == 0 || update->setupflag || list_of != neighbor->lastcall)
-    list_particles();
-  else
-    look_at_places();
+  around.follow(*pair, groupbit, law.h);
   weigh();
   const bool displaces = fills && filled == 0.0, goes_on = update->setupflag && resumes();
   if (!goes_on) sum_fractions();
@@ -80,18 +35,18 @@ void FixSphGrains::find_fractions()
     weigh();
     sum_fractions();
   }
-  mean_phi = mean_of(phi, 1);
+  mean_phi = around.mean_of(phi, 1);
   check_fractions();
   if (update->setupflag) displace();
 }
 
 void FixSphGrains::sum_fractions()
 {
-  const sd_sph_around list = around();
+  const sd_sph_around list = around.list();
   const sd_sph_grains of_grains = are_grains();
-  std::vector<double> found(points.size() + 1, 0.0);
+  std::vector<double> found(around.points.size() + 1, 0.0);
   sd_sph_grain_fractions(&list, &of_grains, volume.data(), found.data());
-  std::vector<double> all = at_atoms(found, 1);
+  std::vector<double> all = around.at_atoms(found, 1);
   reverse(all.data(), 1);
   for (int i = 0; i < atom->nlocal; i++)
     if (all[i] != 0.0 || rows.has(i)) *rows.writable(i) = all[i];
@@ -101,46 +56,45 @@ void FixSphGrains::sum_fractions()
 /* What grains are, and the weights of the water around them. */
 void FixSphGrains::weigh()
 {
-  const size_t n = grains.size(), m = points.size();
+  const size_t n = around.grains.size(), m = around.points.size();
   a.resize(n + 1);
   V.resize(n + 1);
   M.resize(n + 1);
   for (size_t j = 0; j < n; j++) {
-    a[j] = atom->radius[grains[j]];
+    a[j] = atom->radius[around.grains[j]];
     V[j] = sd_sph_sphere(a[j]);
-    M[j] = atom->mask[grains[j]] & free_bits & ~held_bits ? atom->rmass[grains[j]] : HUGE_VAL;
+    M[j] = atom->mask[around.grains[j]] & free_bits & ~held_bits ? atom->rmass[around.grains[j]] : HUGE_VAL;
   }
   volume.resize(m + 1);
   for (size_t p = 0; p < m; p++) {
-    const int i = points[p];
+    const int i = around.points[p];
     volume[p] = atom->rmass[i] / (atom->rho[i] * (1.0 - phi[i]));
   }
-  weight.resize(particle.size() + 1);
   wet.resize(n + 1);
   own.resize(n + 1);
-  const sd_sph_around list = around();
-  const sd_sph_points of_points = {places.data(), volume.data(), walls.data()};
+  const sd_sph_around list = around.list();
+  const sd_sph_points of_points = {around.places.data(), volume.data(), around.walls.data()};
   const sd_sph_grains of_grains = are_grains();
-  sd_sph_grain_weights(law.kernel, law.h, &list, grain_places.data(), &of_points, wet.data());
+  sd_sph_grain_weights(law.kernel, law.h, &list, around.grain_places.data(), &of_points, wet.data());
   sd_sph_grain_shares(&list, &of_grains, volume.data(), own.data());
 }
 
 /* The volume of the particles stays, and so all that has been found with it. */
 void FixSphGrains::displace()
 {
-  for (const int i : points)
+  for (const int i : around.points)
     if (fills && filled == 0.0) atom->rmass[i] *= 1.0 - phi[i];
   filled = 1.0;
 }
 
 const double *FixSphGrains::mixture(const double *v)
 {
-  std::vector<double> velocities(3 * grains.size() + 1), there(3 * points.size() + 1, 0.0);
-  for (size_t j = 0; j < grains.size(); j++) std::copy_n(atom->v[grains[j]], 3, &velocities[3 * j]);
-  const sd_sph_around list = around();
+  std::vector<double> velocities(3 * around.grains.size() + 1), there(3 * around.points.size() + 1, 0.0);
+  for (size_t j = 0; j < around.grains.size(); j++) std::copy_n(atom->v[around.grains[j]], 3, &velocities[3 * j]);
+  const sd_sph_around list = around.list();
   const sd_sph_grains of_grains = are_grains();
   sd_sph_grain_flux(&list, &of_grains, volume.data(), velocities.data(), there.data());
-  moved = at_atoms(there, 3);
+  moved = around.at_atoms(there, 3);
   reverse(moved.data(), 3);
   forward(moved.data(), 3);
   for (int i = 0; i < atom->nlocal + atom->nghost; i++)
@@ -212,15 +166,15 @@ void FixSphGrains::post_force(int /*vflag*/)
 {
   for (int i = 0; i < atom->nlocal; i++)
     if (pair->is_particle(i)) shown.writable(i)[0] = phi[i];
-  std::vector<double> F(3 * grains.size() + 1, 0.0), D = F;
+  std::vector<double> F(3 * around.grains.size() + 1, 0.0), D = F;
   stresses(F);
   drags(F, D);
   std::fill_n(total, 3, 0.0);
-  for (size_t j = 0; j < grains.size(); j++)
+  for (size_t j = 0; j < around.grains.size(); j++)
     for (int d = 0; d < 3; d++) {
       const double both = F[3 * j + d] + D[3 * j + d];
-      shown.writable(grains[j])[1 + d] = both;
-      atom->f[grains[j]][d] += both;
+      shown.writable(around.grains[j])[1 + d] = both;
+      atom->f[around.grains[j]][d] += both;
       total[d] += both;
     }
 }
@@ -240,12 +194,12 @@ void FixSphGrains::stresses(std::vector<double> &F)
     }
   }
   forward(forces.data(), 3);
-  std::vector<double> per_volume = at_points(forces, 3), mean(3 * grains.size() + 1);
-  for (size_t k = 0; k < 3 * points.size(); k++) per_volume[k] /= volume[k / 3];
-  const sd_sph_around list = around();
+  std::vector<double> per_volume = around.at_points(forces, 3), mean(3 * around.grains.size() + 1);
+  for (size_t k = 0; k < 3 * around.points.size(); k++) per_volume[k] /= volume[k / 3];
+  const sd_sph_around list = around.list();
   const sd_sph_grains of_grains = are_grains();
   sd_sph_grain_vector_means(&list, per_volume.data(), mean.data());
-  sd_sph_grain_stresses((int) grains.size(), &of_grains, mean.data(), F.data());
+  sd_sph_grain_stresses((int) around.grains.size(), &of_grains, mean.data(), F.data());
 }
 
 /* Of the water at the places of grains, and of these */
@@ -255,9 +209,9 @@ FixSphGrains::Slip FixSphGrains::slip_of_now()
   const size_t all = atom->nlocal + atom->nghost;
   std::vector<double> water(3 * all + 1, 0.0);
   for (size_t i = 0; i < all; i++) std::copy_n(atom->v[i], 3, &water[3 * i]);
-  slip.water = mean_of(water, 3);
-  slip.grains.resize(3 * grains.size() + 1);
-  for (size_t j = 0; j < grains.size(); j++) std::copy_n(atom->v[grains[j]], 3, &slip.grains[3 * j]);
+  slip.water = around.mean_of(water, 3);
+  slip.grains.resize(3 * around.grains.size() + 1);
+  for (size_t j = 0; j < around.grains.size(); j++) std::copy_n(atom->v[around.grains[j]], 3, &slip.grains[3 * j]);
   return slip;
 }
 
@@ -272,29 +226,29 @@ FixSphGrains::Slip FixSphGrains::slip_without_drag(const std::vector<double> &F)
       for (int d = 0; d < 3; d++)
         water[3 * (size_t) i + d] = atom->v[i][d] + dt * atom->f[i][d] / atom->rmass[i];
   forward(water.data(), 3);
-  slip.water = mean_of(water, 3);
-  slip.grains.resize(3 * grains.size() + 1);
-  for (size_t j = 0; j < grains.size(); j++)
+  slip.water = around.mean_of(water, 3);
+  slip.grains.resize(3 * around.grains.size() + 1);
+  for (size_t j = 0; j < around.grains.size(); j++)
     for (int d = 0; d < 3; d++)
       slip.grains[3 * j + d] =
-          atom->v[grains[j]][d] + dt * (atom->f[grains[j]][d] + F[3 * j + d]) / M[j];
+          atom->v[around.grains[j]][d] + dt * (atom->f[around.grains[j]][d] + F[3 * j + d]) / M[j];
   return slip;
 }
 
 /* Force over slip of each grain, by the law at the slip of now */
 std::vector<double> FixSphGrains::drag_factors()
 {
-  const int n = (int) grains.size();
+  const int n = (int) around.grains.size();
   const size_t all = atom->nlocal + atom->nghost;
   std::vector<double> k(n + 1), at_grains(n + 1);
-  const std::vector<double> rho = mean_of(std::vector<double>(atom->rho, atom->rho + all), 1);
+  const std::vector<double> rho = around.mean_of(std::vector<double>(atom->rho, atom->rho + all), 1);
   sd_sph_grain_phi(n, mean_phi.data(), own.data(), at_grains.data());
   const sd_sph_grains of_grains = are_grains();
   const Slip now = slip_of_now();
   const sd_sph_slip slip = {now.water.data(), now.grains.data()};
   sd_sph_grain_drag(&law, n, &of_grains, &slip, rho.data(), at_grains.data(), k.data());
   check_bodies(k);
-  for (int j = 0; j < n; j++) shown.writable(grains[j])[0] = at_grains[j];
+  for (int j = 0; j < n; j++) shown.writable(around.grains[j])[0] = at_grains[j];
   return k;
 }
 
@@ -305,15 +259,15 @@ void FixSphGrains::drags(const std::vector<double> &F, std::vector<double> &D)
   const Slip without = slip_without_drag(F);
   const sd_sph_slip slip = {without.water.data(), without.grains.data()};
   const std::vector<double> k = drag_factors();
-  const sd_sph_around list = around();
-  std::vector<double> total_drag(points.size() + 1, 0.0);
+  const sd_sph_around list = around.list();
+  std::vector<double> total_drag(around.points.size() + 1, 0.0);
   sd_sph_grain_load(&list, k.data(), total_drag.data());
-  std::vector<double> slowed = at_atoms(total_drag, 1);
+  std::vector<double> slowed = around.at_atoms(total_drag, 1);
   reverse(slowed.data(), 1);
   for (int i = 0; i < atom->nlocal; i++)
     if (slowed[i] != 0.0) slowed[i] /= atom->rmass[i];
   forward(slowed.data(), 1);
-  const std::vector<double> slowed_points = at_points(slowed, 1);
+  const std::vector<double> slowed_points = around.at_points(slowed, 1);
   sd_sph_grain_drags(&list, update->dt, &slip, M.data(), k.data(), slowed_points.data(), D.data());
   give_back(D);
 }
@@ -321,10 +275,10 @@ void FixSphGrains::drags(const std::vector<double> &F, std::vector<double> &D)
 /* Drag on grains slows the water of all ranks. */
 void FixSphGrains::give_back(const std::vector<double> &D)
 {
-  const sd_sph_around list = around();
-  std::vector<double> mine(3 * points.size() + 1, 0.0);
+  const sd_sph_around list = around.list();
+  std::vector<double> mine(3 * around.points.size() + 1, 0.0);
   sd_sph_grain_reactions(&list, D.data(), mine.data());
-  std::vector<double> all = at_atoms(mine, 3);
+  std::vector<double> all = around.at_atoms(mine, 3);
   reverse(all.data(), 3);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!pair->is_particle(i)) continue;
@@ -333,34 +287,6 @@ void FixSphGrains::give_back(const std::vector<double> &D)
       atom->f[i][d] += all[3 * (size_t) i + d];
     }
   }
-}
-
-// --- rows of atoms, of points and of grains ------------------------------------------------------
-
-std::vector<double> FixSphGrains::at_points(const std::vector<double> &of_atoms, int columns) const
-{
-  std::vector<double> out(columns * points.size() + 1, 0.0);
-  for (size_t p = 0; p < points.size(); p++)
-    std::copy_n(&of_atoms[columns * (size_t) points[p]], columns, &out[columns * p]);
-  return out;
-}
-
-std::vector<double> FixSphGrains::at_atoms(const std::vector<double> &of_points, int columns) const
-{
-  std::vector<double> out(columns * (size_t) (atom->nlocal + atom->nghost) + 1, 0.0);
-  for (size_t p = 0; p < points.size(); p++)
-    std::copy_n(&of_points[columns * p], columns, &out[columns * (size_t) points[p]]);
-  return out;
-}
-
-std::vector<double> FixSphGrains::mean_of(const std::vector<double> &of_atoms, int columns)
-{
-  const sd_sph_around list = around();
-  const std::vector<double> there = at_points(of_atoms, columns);
-  std::vector<double> mean(columns * grains.size() + 1);
-  const auto means = columns == 3 ? sd_sph_grain_vector_means : sd_sph_grain_means;
-  means(&list, there.data(), mean.data());
-  return mean;
 }
 
 double FixSphGrains::compute_vector(int k)

@@ -6,13 +6,14 @@
 #include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
 #include "sd_constants.h"
+#include "sd_sph_deep.h"
+#include "sd_sph_energy.h"
 
 #include "atom.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
@@ -21,7 +22,7 @@ using namespace StokesDyn;
 static constexpr double LEAST_OHNESORGE = 0.01, LEAST_STIFFNESS = 12.0;
 static constexpr int ACROSS = 20;    // particles over the smallest drop that is resolved
 
-FixSphTension::FixSphTension(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg), shown(5)
+FixSphTension::FixSphTension(LAMMPS *lmp, int narg, char **arg) : SphFix(lmp, narg, arg), shown(5), drops(lmp)
 {
   Keywords in = keywords(narg, arg);
   sigma = in.positional("SIGMA").positive();
@@ -57,11 +58,6 @@ void FixSphTension::parse_contact(Keywords &in)
   } while (in.more() && is_number(in.peek(), number));
 }
 
-FixSphTension::~FixSphTension()
-{
-  sd_cells_free(&cells_of_drops);
-}
-
 int FixSphTension::setmask()
 {
   return FixConst::POST_FORCE;
@@ -95,31 +91,23 @@ void FixSphTension::check_particles()
     voice.fail("atom " + std::to_string(other) +
                " is fluid and not in its group: the surface of a part of the fluid would run through its inside; use "
                "the group of all fluid");
-  double least = HUGE_VAL, most = 0.0, V = 0.0, least_rho = HUGE_VAL, most_rho = 0.0;
+  const double h = pair->one_smoothing_length(voice);
+  double V = 0.0, least_rho = HUGE_VAL, most_rho = 0.0;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!pair->is_particle(i)) continue;
-    const double h = pair->smoothing_length(atom->type[i]);
-    least = std::min(least, h);
-    most = std::max(most, h);
-    if (pair->is_of_wall(i)) continue;
+    if (!pair->is_particle(i) || pair->is_of_wall(i)) continue;
     const double rho = pair->rest_density(i);
     least_rho = std::min(least_rho, rho);
     most_rho = std::max(most_rho, rho);
     V = std::max(V, Sph::mass(lmp, i) / rho);
   }
-  least = smallest_of_all(world, least);
-  most = largest_of_all(world, most);
   rho0 = smallest_of_all(world, least_rho);
   most_rho = largest_of_all(world, most_rho);
   if (most_rho == 0.0) voice.fail("there is no fluid of pair_style sph/artVisc/tensCorr");
-  if (most > least * (1.0 + 1e-9))
-    voice.fail("types of pair_style sph/artVisc/tensCorr have smoothing lengths from " + text(least) + " to " +
-               text(most) + ": it needs one h for all of them");
   if (most_rho > rho0 * (1.0 + 1e-9))
     voice.fail("fluids have densities from " + text(rho0) + " to " + text(most_rho) +
                ": it is made for one fluid with a free surface; use one fix sph/pressure with a rho0");
   spacing = pow(largest_of_all(world, V), 1.0 / pair->dimension());
-  sd_sph_surface_make(pair->kernel(), pair->dimension(), least, &surface);
+  sd_sph_surface_make(pair->kernel(), pair->dimension(), h, &surface);
 }
 
 void FixSphTension::check_contacts()
@@ -184,8 +172,8 @@ void FixSphTension::post_force(int /*vflag*/)
   look_at_particles();
   find_normals();
   find_curvatures();
+  find_forces();
   add_forces();
-  keep_momentum();
   show();
 }
 
@@ -214,6 +202,21 @@ void FixSphTension::look_at_particles()
   film.wall = wall.data();
 }
 
+void FixSphTension::make_rows()
+{
+  const size_t nlocal = atom->nlocal, n = (size_t) film.all;
+  sums.resize(8 * nlocal + 4);
+  whole.resize(4 * nlocal + 4);
+  at_surface.assign(4 * (n + 1), 0.0);
+  turns.resize(SD_SPH_SKIN_SUMS * nlocal + 4);
+  rows = {sums.data(), nullptr, whole.data(), at_surface.data(), nullptr, turns.data()};
+  if (!walls) return;
+  beside.resize(8 * nlocal + 4);
+  at_wall.resize(8 * nlocal + 4);
+  rows.beside = beside.data();
+  rows.at_wall = at_wall.data();
+}
+
 /* Where the surface may be: in supports that are cut, and beside walls. */
 void FixSphTension::find_deep()
 {
@@ -227,33 +230,25 @@ void FixSphTension::find_deep()
 
 void FixSphTension::find_normals()
 {
-  const size_t nlocal = atom->nlocal, n = nlocal + atom->nghost;
-  sums.resize(8 * nlocal + 4);
-  sd_sph_film_sums(&film, sums.data());
+  const size_t n = (size_t) film.all;
+  make_rows();
+  sd_sph_film_sums(&film, &rows);
   if (walls) {
     if (update->setupflag) look_at_walls();
     one.assign(n + 1, 0.0);
-    sd_sph_film_wetness(&film, sums.data(), one.data());
+    sd_sph_film_wetness(&film, &rows, one.data());
     forward(one.data(), 1);
     contact.assign(4 * (n + 1), 0.0);
     for (size_t i = 0; i < n; i++) {
       if (!wall[i]) continue;
       const auto found = contacts.find(atom->type[i]);
       const std::pair<double, double> angle = found == contacts.end() ? std::make_pair(0.0, 1.0) : found->second;
-      double *row = &contact[4 * i];
-      row[0] = one[i];
-      row[1] = angle.first;
-      row[2] = angle.second;
-      row[3] = 1.0;
+      const double row[4] = {one[i], angle.first, angle.second, 1.0};
+      std::copy_n(row, 4, &contact[4 * i]);
     }
-    beside.resize(8 * nlocal + 4);
-    at_wall.resize(8 * nlocal + 4);
-    sd_sph_film_wet_walls(&film, contact.data(), sums.data(), beside.data());
+    sd_sph_film_wet_walls(&film, contact.data(), &rows);
   }
-  whole.resize(4 * nlocal + 4);
-  at_surface.assign(4 * (n + 1), 0.0);
-  sd_sph_film_normals(&film, sums.data(), walls ? beside.data() : nullptr, whole.data(), at_surface.data(),
-                      walls ? at_wall.data() : nullptr);
+  sd_sph_film_normals(&film, &rows);
   forward(at_surface.data(), 4);
 }
 
@@ -282,77 +277,45 @@ const double *FixSphTension::spread(const std::vector<double> &k)
 /* Friction sees the velocities of the time of the force. */
 void FixSphTension::find_curvatures()
 {
-  const size_t nlocal = atom->nlocal, n = (size_t) film.all, entries = sd_sph_skin_size(&film, at_surface.data());
+  const size_t nlocal = atom->nlocal, n = (size_t) film.all, entries = sd_sph_skin_size(&film, &rows);
   v4.resize(4 * (n + 1));
   sd_sph_pack_v(film.all, n ? atom->vest[0] : nullptr, atom->rho, v4.data());
-  turns.resize(SD_SPH_SKIN_SUMS * nlocal + 4);
   first.resize(nlocal + 1);
   if (skin.size() < entries) {
     skin.resize(entries + entries / 8);
     weights.resize(entries + entries / 8);
   }
-  for (auto *rows : {&kappa, &once, &twice}) rows->resize(nlocal + 1);
+  for (auto *each : {&kappa, &once, &twice}) each->resize(nlocal + 1);
   shows.resize(n + 1);
   const sd_sph_skin pairs = {first.data(), shows.data(), skin.data(), weights.data()};
-  const double *beside_wall = walls ? at_wall.data() : nullptr, *surface_rows = at_surface.data();
-  sd_sph_film_curvatures(&film, whole.data(), surface_rows, beside_wall, v4.data(), &pairs, turns.data(), kappa.data());
-  sd_sph_film_means(&film, surface_rows, &pairs, turns.data(), spread(kappa), once.data());
-  sd_sph_film_means(&film, surface_rows, &pairs, turns.data(), spread(once), twice.data());
-  sd_sph_film_sharpen(&film, kappa.data(), once.data(), twice.data(), beside_wall, once.data());
-  sd_sph_film_inwards(&film, surface_rows, &pairs, whole.data(), turns.data(), spread(once), kappa.data());
+  sd_sph_film_curvatures(&film, &rows, v4.data(), &pairs, kappa.data());
+  sd_sph_film_means(&film, &rows, &pairs, spread(kappa), once.data());
+  sd_sph_film_means(&film, &rows, &pairs, spread(once), twice.data());
+  sd_sph_film_sharpen(&film, &rows, kappa.data(), once.data(), twice.data(), once.data());
+  sd_sph_film_inwards(&film, &rows, &pairs, spread(once), kappa.data());
 }
 
-void FixSphTension::add_forces()
+void FixSphTension::find_forces()
 {
   F.resize(3 * (size_t) atom->nlocal + 1);
   const sd_sph_tension how = {sigma, sd_sph_surface_friction(sigma, rho0, surface.h)};
   area.resize(atom->nlocal + 1);
-  const double *k = kappa.data();
-  sd_sph_tension_forces(&film, &how, whole.data(), at_surface.data(), turns.data(), k, F.data(), area.data());
+  sd_sph_tension_forces(&film, &how, &rows, kappa.data(), F.data(), area.data());
   if (!walls) return;
   one.resize(atom->nlocal + 1);
   for (int i = 0; i < atom->nlocal; i++)
     one[i] = pair->is_particle(i) && !pair->is_of_wall(i) ? pair->pressure(i) : 0.0;
-  sd_sph_dry_walls(&film, sigma, sums.data(), whole.data(), k, one.data(), F.data());
+  sd_sph_dry_walls(&film, sigma, &rows, kappa.data(), one.data(), F.data());
 }
 
-/* In every step: drops that meet are one at once, whenever the run began and LAMMPS re-neighboured. */
-void FixSphTension::find_drops()
-{
-  const size_t n = (size_t) film.all;
-  parent.resize(n + 1);
-  name.assign(n + 1, 0.0);
-  if (room_of_drops < n) {
-    sd_cells_free(&cells_of_drops);
-    room_of_drops = n + n / 4;
-    if (sd_cells_create(&cells_of_drops, (int) room_of_drops) != SD_OK) throw std::bad_alloc();
-  }
-  sd_sph_find_drops(&film, &cells_of_drops, parent.data());
-  for (size_t i = 0; i < n; i++) name[i] = (double) atom->tag[i];
-  int changed = 1;
-  while (changed) {
-    changed = largest_of_all(world, sd_sph_name_drops(film.all, parent.data(), name.data()));
-    if (changed) forward(name.data(), 1);
-  }
-}
-
-/* Of drops that touch no wall and no open end. */
-void FixSphTension::keep_momentum()
+/* Of drops that touch no wall and no open end the momentum stays. */
+void FixSphTension::add_forces()
 {
   const int nlocal = atom->nlocal;
-  const size_t n = (size_t) film.all;
-  find_drops();
-  place.resize(n + 1);
   held.assign(nlocal + 1, 0.0);
-  drops.resize(nlocal + 1);
   for (int i = 0; i < nlocal; i++)
     held[i] = (walls && sums[8 * (size_t) i + 4] > 0.0) || pair->is_held(i) ? 1.0 : 0.0;
-  const int mine = sd_sph_sum_drops(&film, parent.data(), name.data(), mass.data(), held.data(), F.data(),
-                                    drops.data(), place.data());
-  std::vector<sd_sph_drop> all = from_all(world, std::vector<sd_sph_drop>(drops.begin(), drops.begin() + mine));
-  ndrops = sd_sph_join_drops((int) all.size(), all.data(), sum);
-  sd_sph_find_excess(ndrops, all.data(), mine, drops.data());
-  sd_sph_keep_momentum(&film, parent.data(), place.data(), mass.data(), drops.data(), F.data());
+  drops.keep_momentum(film, mass.data(), held.data(), [this](double *name) { forward(name, 1); }, F.data());
   for (int i = 0; i < nlocal; i++)
     for (int d = 0; d < 3; d++) atom->f[i][d] += F[3 * (size_t) i + d];
 }
@@ -381,13 +344,13 @@ double FixSphTension::compute_scalar()
 
 double FixSphTension::compute_vector(int k)
 {
-  return k < 3 ? sum[k] : k == 3 ? (double) ndrops : whole_area();
+  return k < 3 ? drops.force_on_held(k) : k == 3 ? (double) drops.number() : whole_area();
 }
 
 double FixSphTension::memory_usage()
 {
   double bytes = SphFix::memory_usage();
-  for (const auto *rows : {&x4, &v4, &at_surface, &contact, &whole, &at_wall, &sums, &beside, &turns})
-    bytes += (double) rows->capacity() * sizeof(double);
+  for (const auto *each : {&x4, &v4, &at_surface, &contact, &whole, &at_wall, &sums, &beside, &turns})
+    bytes += (double) each->capacity() * sizeof(double);
   return bytes + (double) skin.capacity() * (sizeof(int) + sizeof(double));    // and its weights
 }

@@ -3,9 +3,7 @@
 #ifndef SD_FIX_SPH_TENSION_H
 #define SD_FIX_SPH_TENSION_H
 
-#include "sd_sph_deep.h"
-#include "sd_sph_drops.h"
-#include "sd_sph_energy.h"
+#include "drops.h"
 #include "sd_sph_tension.h"
 #include "sph.h"
 
@@ -21,7 +19,6 @@ class FixSphTension : public SphFix {
   static constexpr const char *STYLE = "sph/tension";
 
   FixSphTension(LAMMPS_NS::LAMMPS *, int, char **);
-  ~FixSphTension() override;
   int setmask() override;
   void init() override;
   void setup(int vflag) override;
@@ -61,24 +58,21 @@ class FixSphTension : public SphFix {
   // a step; rows of particles of this rank, of their ghosts too, and of the far-away particle
   sd_sph_both list = {};
   sd_sph_film film = {};
+  sd_sph_film_rows rows = {};
   Rows x4, v4, at_surface, contact, whole, at_wall, sums, beside, turns;
-  std::vector<int> wall, parent, place, skin;
+  std::vector<int> wall, skin;
   std::vector<size_t> first;
   std::vector<char> inside, marked, cells, deep, shows;
-  std::vector<double> one, kappa, once, twice, weights, F, area, name, mass, held;
-  std::vector<sd_sph_drop> drops;
-  sd_cells cells_of_drops = {};
-  size_t room_of_drops = 0;
-  double sum[3] = {0.0, 0.0, 0.0};
-  int ndrops = 0;
+  std::vector<double> one, kappa, once, twice, weights, F, area, mass, held;
+  Drops drops;
   void look_at_particles();
+  void make_rows();
   void find_deep();
   void find_normals();
   void find_curvatures();
   const double *spread(const std::vector<double> &k);
+  void find_forces();
   void add_forces();
-  void find_drops();
-  void keep_momentum();
   void show();
   double whole_area() const;
 };

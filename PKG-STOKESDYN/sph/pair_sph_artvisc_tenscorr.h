@@ -88,6 +88,8 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair>, public SphCoefficients {
   /* Is it at rest (nve/sph/stationary), and does its density not count those of its own kind? */
   bool rests_alone(int i) const;
   bool has_ends() const { return !inlets.empty() || !outlets.empty(); }
+  /* The h of all particles of this style on all ranks; 0: there is none. Fails where types have others. */
+  double one_smoothing_length(const Voice &of) const;
   /* For fix sph/tension: are there fluids of different density? */
   bool has_fluids() const { return sd_sph_of_fluids(&model) != 0; }
   /* Of particle i that is none of a wall: that of its equation of state at its density, and the

@@ -43,6 +43,22 @@ void PairSph::look_at_densities(int n)
   }
 }
 
+double PairSph::one_smoothing_length(const Voice &of) const
+{
+  double least = HUGE_VAL, most = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_particle(i)) continue;
+    least = std::min(least, smoothing_length(atom->type[i]));
+    most = std::max(most, smoothing_length(atom->type[i]));
+  }
+  least = smallest_of_all(world, least);
+  most = largest_of_all(world, most);
+  if (most > least * (1.0 + 1e-9))
+    of.fail("types of pair_style sph/artVisc/tensCorr have smoothing lengths from " + text(least) + " to " +
+            text(most) + ": it needs one h for all of them");
+  return most > 0.0 ? least : 0.0;
+}
+
 // --- at the beginning of a run ---------------------------------------------------------------------
 
 /* Before any sum, but for look_at_bodies(), which needs the pressures of the first force */

@@ -126,26 +126,26 @@ static double own_share(const sd_sph_film *f, int i)
   return f->x4[4 * (size_t) i + 3] * sd_sph_W(s->kernel, s->dimension, 0.0, s->h);
 }
 
-void sd_sph_film_sums(const sd_sph_film *f, double *sums)
+void sd_sph_film_sums(const sd_sph_film *f, const sd_sph_film_rows *rows)
 {
-  loops_of_films()->sums(f, sums);
+  loops_of_films()->sums(f, rows->sums);
   const double W0 = sd_sph_W(f->surface->kernel, f->surface->dimension, 0.0, f->surface->h);
   for (int i = 0; i < f->list->n; i++)
-    sums[8 * (size_t) i + (is_wall(f, i) ? 4 : 0)] += W0 * f->x4[4 * (size_t) i + 3];
+    rows->sums[8 * (size_t) i + (is_wall(f, i) ? 4 : 0)] += W0 * f->x4[4 * (size_t) i + 3];
 }
 
-void sd_sph_film_wetness(const sd_sph_film *f, const double *sums, double *wet)
+void sd_sph_film_wetness(const sd_sph_film *f, const sd_sph_film_rows *rows, double *wet)
 {
   for (int i = 0; i < f->list->n; i++) {
-    const double S = sums[8 * (size_t) i], Sw = sums[8 * (size_t) i + 4];
+    const double S = rows->sums[8 * (size_t) i], Sw = rows->sums[8 * (size_t) i + 4];
     wet[i] = is_wall(f, i) && Sw <= 0.98 ? fmin(1.0, S / fmax(1.0 - Sw, 0.02)) : 0.0;
   }
 }
 
-void sd_sph_film_wet_walls(const sd_sph_film *f, const double *contact, const double *sums, double *beside)
+void sd_sph_film_wet_walls(const sd_sph_film *f, const double *contact, const sd_sph_film_rows *rows)
 {
-  memset(beside, 0, sizeof(double) * 8 * (size_t) f->list->n);
-  loops_of_films()->wet_walls(f, contact, sums, beside);
+  memset(rows->beside, 0, sizeof(double) * 8 * (size_t) f->list->n);
+  loops_of_films()->wet_walls(f, contact, rows);
 }
 
 static double length3(const double *a)
@@ -159,7 +159,7 @@ static void make_unit(double *n)
   for (int d = 0; d < 3; d++) n[d] /= length;
 }
 
-/* What the wall says of the surface at a particle, at_wall of sd_sph_film_normals; 0 where the fluid shows no
+/* What the wall says of the surface at a particle, a row of at_wall; 0 where the fluid shows no
  * direction along the wall, as in the middle of a wetted one. sums: S Gf | Sw Gw. */
 static void contact_line(const sd_sph_surface *s, const double *sums, const double *beside, double row[8])
 {
@@ -183,29 +183,28 @@ static void contact_line(const sd_sph_surface *s, const double *sums, const doub
   row[7] = fmax(0.01 * h, (1.0 - nw) * height);
 }
 
-void sd_sph_film_normals(const sd_sph_film *f, const double *sums, const double *beside, double *whole,
-                         double *surface, double *at_wall)
+void sd_sph_film_normals(const sd_sph_film *f, const sd_sph_film_rows *rows)
 {
   static const double FROM = 0.1, TO = 0.3;    // of h |G|
   const double h = f->surface->h;
   for (int i = 0; i < f->list->n; i++) {
-    const double *of = sums + 8 * (size_t) i;
-    double *S_G = whole + 4 * (size_t) i, *n = surface + 4 * (size_t) i;
+    const double *of = rows->sums + 8 * (size_t) i, *beside = rows->beside ? rows->beside + 8 * (size_t) i : NULL;
+    double *S_G = rows->whole + 4 * (size_t) i, *n = rows->surface + 4 * (size_t) i;
+    double *contact = rows->at_wall ? rows->at_wall + 8 * (size_t) i : NULL;
     memcpy(S_G, of, 4 * sizeof(double));
     memset(n, 0, 4 * sizeof(double));
-    if (at_wall) memset(at_wall + 8 * (size_t) i, 0, 8 * sizeof(double));
+    if (contact) memset(contact, 0, 8 * sizeof(double));
     if (is_wall(f, i)) {
       n[3] = -1.0;
       continue;
     }
-    for (int c = 0; c < 4 && beside; c++) S_G[c] += beside[8 * (size_t) i + c];
+    for (int c = 0; c < 4 && beside; c++) S_G[c] += beside[c];
     const double size = length3(S_G + 1);
     if (!(size * h > FROM) || (f->inside && f->inside[i] && !(of[4] > 0.0))) continue;
     n[3] = fmin(1.0, (size * h - FROM) / (TO - FROM));
     for (int d = 0; d < 3; d++) n[d] = -S_G[1 + d] / size;
     if (!beside) continue;
-    double *contact = at_wall + 8 * (size_t) i;
-    contact_line(f->surface, of, beside + 8 * (size_t) i, contact);
+    contact_line(f->surface, of, beside, contact);
     if (!(contact[3] > 0.0)) continue;
     for (int d = 0; d < 3; d++) n[d] += contact[3] * (contact[d] - n[d]);
     make_unit(n);
@@ -265,75 +264,75 @@ static void along_surface(const double *n, double A[9])
     }
 }
 
-size_t sd_sph_skin_size(const sd_sph_film *f, const double *surface)
+size_t sd_sph_skin_size(const sd_sph_film *f, const sd_sph_film_rows *rows)
 {
   size_t size = SD_SPH_LANES, most = 0;
   for (int i = 0; i < f->list->n; i++) {
     const size_t count = (size_t) f->list->count[i];
-    if (surface[4 * (size_t) i + 3] > 0.0) size += count;
+    if (rows->surface[4 * (size_t) i + 3] > 0.0) size += count;
     if (count > most) most = count;
   }
   return size + most;    // of one particle inside
 }
 
-void sd_sph_film_curvatures(const sd_sph_film *f, const double *whole, const double *surface,
-                            const double *at_wall, const double *v4, const sd_sph_skin *skin, double *rows,
-                            double *kappa)
+void sd_sph_film_curvatures(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *v4,
+                            const sd_sph_skin *skin, double *kappa)
 {
+  const double *surface = rows->surface, *at_wall = rows->at_wall;
   double gradient[9];
   for (int i = 0; i <= f->all; i++) skin->shows[i] = surface[4 * (size_t) i + 3] != 0.0;
-  loops_of_films()->turns(f, surface, at_wall, v4, skin, rows);
+  loops_of_films()->turns(f, rows, v4, skin);
   for (int i = 0; i < f->list->n; i++) {
     kappa[i] = 0.0;
     if (!(surface[4 * (size_t) i + 3] > 0.0)) continue;
-    corrected_gradient(f->surface->dimension, rows + SD_SPH_SKIN_SUMS * (size_t) i, gradient);
+    corrected_gradient(f->surface->dimension, rows->turns + SD_SPH_SKIN_SUMS * (size_t) i, gradient);
     along_surface(surface + 4 * (size_t) i, gradient);
     const int curved = !at_wall || !(at_wall[8 * (size_t) i + 3] > 0.0);
-    kappa[i] = sd_sph_surface_curvature(f->surface, gradient, whole[4 * (size_t) i], curved);
+    kappa[i] = sd_sph_surface_curvature(f->surface, gradient, rows->whole[4 * (size_t) i], curved);
   }
 }
 
-void sd_sph_film_means(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin,
-                       const double *rows, const double *k, double *mean)
+void sd_sph_film_means(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin,
+                       const double *k, double *mean)
 {
   loops_of_films()->means(f, skin, k, mean);
   for (int i = 0; i < f->list->n; i++) {
-    const double w = surface[4 * (size_t) i + 3], own = w > 0.0 ? own_share(f, i) * w : 0.0;
-    mean[i] = w > 0.0 ? (mean[i] + own * k[i]) / (rows[SD_SPH_SKIN_SUMS * (size_t) i + 15] + own) : 0.0;
+    const double w = rows->surface[4 * (size_t) i + 3], own = w > 0.0 ? own_share(f, i) * w : 0.0;
+    mean[i] = w > 0.0 ? (mean[i] + own * k[i]) / (rows->turns[SD_SPH_SKIN_SUMS * (size_t) i + 15] + own) : 0.0;
   }
 }
 
-void sd_sph_film_sharpen(const sd_sph_film *f, const double *kappa, const double *once, const double *twice,
-                         const double *at_wall, double *ks)
+void sd_sph_film_sharpen(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *kappa, const double *once,
+                         const double *twice, double *ks)
 {
   static const double SHARPER = 2.8, DEEPER = 0.16;
   for (int i = 0; i < f->list->n; i++) {
-    const double nw = at_wall ? at_wall[8 * (size_t) i + 3] : 0.0;
+    const double nw = rows->at_wall ? rows->at_wall[8 * (size_t) i + 3] : 0.0;
     const double k = (1.0 - nw) * (once[i] + SHARPER * (once[i] - twice[i])) + nw * kappa[i];
     ks[i] = k * (1.0 + DEEPER / (f->surface->dimension - 1) * f->surface->h * k);
   }
 }
 
-void sd_sph_film_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin, double *whole,
-                         double *rows, const double *ks, double *k)
+void sd_sph_film_inwards(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin, const double *ks,
+                         double *k)
 {
-  sd_sph_film_means(f, surface, skin, rows, ks, k);
-  loops_of_films()->inwards(f, surface, skin, ks, whole, rows, k);
+  sd_sph_film_means(f, rows, skin, ks, k);
+  loops_of_films()->inwards(f, rows, skin, ks, k);
   for (int i = 0; i < f->list->n; i++) {
-    const double w = surface[4 * (size_t) i + 3];
+    const double w = rows->surface[4 * (size_t) i + 3];
     if (w > 0.0) k[i] = w * ks[i] + (1.0 - w) * k[i];
   }
 }
 
 // --- force -----------------------------------------------------------------------------------------
 
-void sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const double *whole,
-                           const double *surface, const double *rows, const double *k, double *F, double *area)
+void sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const sd_sph_film_rows *rows, const double *k,
+                           double *F, double *area)
 {
   const double factor = 2.0 * (f->surface->dimension + 2) * t->friction;
   for (int i = 0; i < f->list->n; i++) {
-    const double V = is_wall(f, i) ? 0.0 : f->x4[4 * (size_t) i + 3], *G = whole + 4 * (size_t) i + 1,
-                 w = surface[4 * (size_t) i + 3], *rubs = rows + SD_SPH_SKIN_SUMS * (size_t) i + 16;
+    const double V = is_wall(f, i) ? 0.0 : f->x4[4 * (size_t) i + 3], *G = rows->whole + 4 * (size_t) i + 1,
+                 w = rows->surface[4 * (size_t) i + 3], *rubs = rows->turns + SD_SPH_SKIN_SUMS * (size_t) i + 16;
     for (int d = 0; d < 3; d++) {
       F[3 * (size_t) i + d] = 2.0 * t->sigma * V * k[i] * G[d];
       if (w > 0.0) F[3 * (size_t) i + d] += factor * w * V * rubs[d];
@@ -342,11 +341,11 @@ void sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const 
   }
 }
 
-void sd_sph_dry_walls(const sd_sph_film *f, double sigma, const double *sums, const double *whole, const double *k,
+void sd_sph_dry_walls(const sd_sph_film *f, double sigma, const sd_sph_film_rows *rows, const double *k,
                       const double *P, double *F)
 {
   for (int i = 0; i < f->list->n; i++) {
-    const double *of = sums + 8 * (size_t) i, *G = whole + 4 * (size_t) i + 1;
+    const double *of = rows->sums + 8 * (size_t) i, *G = rows->whole + 4 * (size_t) i + 1;
     if (is_wall(f, i) || !(of[4] > 0.0)) continue;
     const double push = 2.0 * f->x4[4 * (size_t) i + 3] * fmax(0.0, fmin(P[i], sigma * k[i]));
     for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] += push * (of[1 + d] + of[5 + d] - G[d]);

@@ -80,23 +80,39 @@ typedef struct {
 } sd_sph_film;
 #define SD_SPH_WHOLE 0.95
 
-/* sums [8 n]: S Gf | Sw Gw, own V W(0) contained; that alone of those that are deep and, without walls, of
- * those inside, most of which no surface reaches. */
-enum { SD_SPH_FILM_SUMS = 8 };
-void sd_sph_film_sums(const sd_sph_film *f, double *sums);
+/* What is found of the particles, one after the other; each function below says what it fills, and reads what
+ * those before it have filled. */
+enum { SD_SPH_SKIN_SUMS = 20 };
+typedef struct {
+  /* [8 n] S Gf | Sw Gw */
+  double *sums;
+  /* [8 n] sum c V W | sum c V g d | sum V W cos, sum V W sin, sum V W | 0 over walls, of fluid with Sw > 0, 0
+   * elsewhere; NULL without walls */
+  double *beside;
+  /* [4 n] S G with wet walls */
+  double *whole;
+  /* [4 (all+1)] normal, w; 0 0 0 -1 of wall particles; row `all` is 0 */
+  double *surface;
+  /* [8 n] the normal of the contact angle, nw | u, l; NULL without walls */
+  double *at_wall;
+  /* [SD_SPH_SKIN_SUMS n] M | N | sum w V W | sum w V g (v.d)/r^2 d | 0, where w > 0; of other fluid
+   * sum w V W */
+  double *turns;
+} sd_sph_film_rows;
+
+/* Fills sums, own V W(0) contained; that alone of those that are deep and, without walls, of those inside,
+ * most of which no surface reaches. */
+void sd_sph_film_sums(const sd_sph_film *f, const sd_sph_film_rows *rows);
 
 /* c of wall particles, 0 of others: wet [n]. */
-void sd_sph_film_wetness(const sd_sph_film *f, const double *sums, double *wet);
+void sd_sph_film_wetness(const sd_sph_film *f, const sd_sph_film_rows *rows, double *wet);
 
-/* Of fluid particles with Sw > 0, with c, cos and sin of the contact angle, and 1 of wall particles, 0 of
- * others, as rows of contact [4 (all+1)]: rows of beside [8 n]
- *   sum c V W | sum c V g d | sum V W cos, sum V W sin, sum V W | 0         0 elsewhere */
-void sd_sph_film_wet_walls(const sd_sph_film *f, const double *contact, const double *sums, double *beside);
+/* Fills beside, with c, cos and sin of the contact angle, and 1 of wall particles, 0 of others, as rows of
+ * contact [4 (all+1)]. */
+void sd_sph_film_wet_walls(const sd_sph_film *f, const double *contact, const sd_sph_film_rows *rows);
 
-/* whole [4 n]: S G with wet walls. Rows of the surface [4 n]: normal, w; 0 0 0 -1 of wall particles. at_wall
- * [8 n]: the normal of the contact angle, nw | u, l. beside and at_wall are NULL without walls. */
-void sd_sph_film_normals(const sd_sph_film *f, const double *sums, const double *beside, double *whole,
-                         double *surface, double *at_wall);
+/* Fills whole, at_wall and, but for ghosts, surface. */
+void sd_sph_film_normals(const sd_sph_film *f, const sd_sph_film_rows *rows);
 
 /* Pairs of particles of the surface: those of i are first[i] .. first[i+1] - 1, with w_b V_b W; and who shows
  * others a normal, as particle of the surface or of a wall. Room for first [n+1] and shows [all+1], and for
@@ -107,40 +123,37 @@ typedef struct {
   int *neighbor;
   double *weight;
 } sd_sph_skin;
-size_t sd_sph_skin_size(const sd_sph_film *f, const double *surface);
+size_t sd_sph_skin_size(const sd_sph_film *f, const sd_sph_film_rows *rows);
 
-/* Finds the skin, and kappa [n] of particles with w > 0, 0 elsewhere; surface [4 (all+1)], row `all` of it 0;
- * v4 [4 (all+1)] v, unused. rows [SD_SPH_SKIN_SUMS n]: their sums, for what follows. */
-enum { SD_SPH_SKIN_SUMS = 20 };
-void sd_sph_film_curvatures(const sd_sph_film *f, const double *whole, const double *surface,
-                            const double *at_wall, const double *v4, const sd_sph_skin *skin, double *rows,
-                            double *kappa);
+/* Finds the skin, kappa [n] of particles with w > 0, 0 elsewhere, and their turns; v4 [4 (all+1)] v,
+ * unused. */
+void sd_sph_film_curvatures(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *v4,
+                            const sd_sph_skin *skin, double *kappa);
 
 /* <k> [n] of k [all+1], 0 where w is 0. */
-void sd_sph_film_means(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin,
-                       const double *rows, const double *k, double *mean);
+void sd_sph_film_means(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin,
+                       const double *k, double *mean);
 
 /* ks [n] of kappa, <kappa> and <<kappa>>. */
-void sd_sph_film_sharpen(const sd_sph_film *f, const double *kappa, const double *once, const double *twice,
-                         const double *at_wall, double *ks);
+void sd_sph_film_sharpen(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *kappa,
+                         const double *once, const double *twice, double *ks);
 
-/* k [n] of ks [all+1]: inwards, as far as the surface reaches; rows then say of all fluid whether it does,
+/* k [n] of ks [all+1]: inwards, as far as the surface reaches; turns then say of all fluid whether it does,
  * and whole has its G. */
-void sd_sph_film_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin,
-                         double *whole, double *rows, const double *ks, double *k);
+void sd_sph_film_inwards(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin,
+                         const double *ks, double *k);
 
 /* F [3 n] of k, and area [n]: the share of each particle in that of the surface of the fluid, 2 V |G| where
  * the surface reaches, without that on walls. friction: mu_s. */
 typedef struct {
   double sigma, friction;
 } sd_sph_tension;
-void sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const double *whole,
-                           const double *surface, const double *rows, const double *k, double *F,
-                           double *area);
+void sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const sd_sph_film_rows *rows,
+                           const double *k, double *F, double *area);
 
 /* Adds to F [3 n] what takes back the push of dry walls; P [n]: pressure, of fluid. */
-void sd_sph_dry_walls(const sd_sph_film *f, double sigma, const double *sums, const double *whole,
-                      const double *k, const double *P, double *F);
+void sd_sph_dry_walls(const sd_sph_film *f, double sigma, const sd_sph_film_rows *rows, const double *k,
+                      const double *P, double *F);
 
 /* Time step up to which waves of the length 2 h on the surface are resolved, 0.25 sqrt(rho h^3 / (2 pi
  * sigma)); mu_s; and the Ohnesorge number mu / sqrt(rho sigma R) of a drop. */

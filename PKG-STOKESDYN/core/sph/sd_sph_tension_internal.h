@@ -9,17 +9,16 @@
 typedef struct {
   /* sums [8 n], without the particle itself; 0 of those that are deep and, without walls, of those inside */
   void (*sums)(const sd_sph_film *, double *sums);
-  /* of fluid with Sw > 0: adds c V W, c V g d | V W cos, V W sin, V W, 0 to rows [8] of more */
-  void (*wet_walls)(const sd_sph_film *, const double *contact, const double *sums, double *more);
-  /* of w > 0: rows [SD_SPH_SKIN_SUMS]  M | N | sum w V W | sum w V g (v.d)/r^2 d | 0; and fills the skin */
-  void (*turns)(const sd_sph_film *, const double *surface, const double *at_wall, const double *v4,
-                const sd_sph_skin *, double *rows);
+  /* of fluid with Sw > 0: adds to beside */
+  void (*wet_walls)(const sd_sph_film *, const double *contact, const sd_sph_film_rows *);
+  /* turns of w > 0; and fills the skin */
+  void (*turns)(const sd_sph_film *, const sd_sph_film_rows *, const double *v4, const sd_sph_skin *);
   /* sum w V W k [n] of w > 0, without itself; 0 of others */
   void (*means)(const sd_sph_film *, const sd_sph_skin *, const double *k, double *sums);
-  /* of fluid with w = 0: mean [n] of k, 0 where no surface is in reach; sum w V W to its row; and G to whole,
-   * where sums have passed over it */
-  void (*inwards)(const sd_sph_film *, const double *surface, const sd_sph_skin *, const double *k,
-                  double *whole, double *rows, double *mean);
+  /* of fluid with w = 0: mean [n] of k, 0 where no surface is in reach; sum w V W to its turns; and G to
+   * whole, where sums have passed over it */
+  void (*inwards)(const sd_sph_film *, const sd_sph_film_rows *, const sd_sph_skin *, const double *k,
+                  double *mean);
 } sd_sph_film_loops;
 SD_KERNEL_TABLES(sd_sph_film_loops, sd_sph_film_loops);
 

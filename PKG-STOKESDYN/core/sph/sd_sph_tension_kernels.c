@@ -70,12 +70,12 @@ INLINE void film_sums(const sd_sph_film *f, double *sums, sd_sph_kernel kernel, 
   }
 }
 
-INLINE void film_wet_walls(const sd_sph_film *f, const double *contact, const double *sums, double *more,
+INLINE void film_wet_walls(const sd_sph_film *f, const double *contact, const sd_sph_film_rows *rows,
                            sd_sph_kernel kernel)
 {
   const scales c = scales_of(f);
   for (int i = 0; i < f->list->n; i++) {
-    if (f->wall[i] || !(sums[8 * (size_t) i + 4] > 0.0)) continue;
+    if (f->wall[i] || !(rows->sums[8 * (size_t) i + 4] > 0.0)) continue;
     const row4 xi = load4(f->x4 + 4 * (size_t) i);
     vec sum[8];
     for (int k = 0; k < 8; k++) sum[k] = all(0.0);
@@ -88,7 +88,7 @@ INLINE void film_wet_walls(const sd_sph_film *f, const double *contact, const do
       for (int d = 0; d < 3; d++) sum[1 + d] += q[0] * m.g * m.d[d];
       for (int d = 0; d < 3; d++) sum[4 + d] += q[1 + d] * m.W;
     }
-    for (int part = 0; part < 8; part += 4) add4(more + 8 * (size_t) i + part, over_lanes(sum + part));
+    for (int part = 0; part < 8; part += 4) add4(rows->beside + 8 * (size_t) i + part, over_lanes(sum + part));
   }
 }
 
@@ -126,9 +126,10 @@ INLINE void add_turns(const vec d[3], const vec turn[3], vec g, vec *sum)
   }
 }
 
-INLINE void film_turns(const sd_sph_film *f, const double *surface, const double *at_wall, const double *v4,
-                       const sd_sph_skin *skin, double *rows, sd_sph_kernel kernel)
+INLINE void film_turns(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *v4, const sd_sph_skin *skin,
+                       sd_sph_kernel kernel)
 {
+  const double *surface = rows->surface, *at_wall = rows->at_wall;
   const scales c = scales_of(f);
   const vec zero = all(0.0);
   size_t last = 0;
@@ -165,7 +166,7 @@ INLINE void film_turns(const sd_sph_film *f, const double *surface, const double
       add_turns(m.d, n, g, sum);
     }
     for (int part = 0; part < SD_SPH_SKIN_SUMS; part += 4)
-      store4(rows + SD_SPH_SKIN_SUMS * (size_t) i + part, over_lanes(sum + part));
+      store4(rows->turns + SD_SPH_SKIN_SUMS * (size_t) i + part, over_lanes(sum + part));
   }
   skin->first[f->list->n] = last;
 }
@@ -198,9 +199,10 @@ INLINE void late_gradient(const sd_sph_film *f, scales c, row4 xi, int i, double
   for (int d = 0; d < 3; d++) G[d] = whole[d];
 }
 
-INLINE void film_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin, const double *k,
-                         double *whole, double *rows, double *mean, sd_sph_kernel kernel)
+INLINE void film_inwards(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin, const double *k,
+                         double *mean, sd_sph_kernel kernel)
 {
+  const double *surface = rows->surface;
   const scales c = scales_of(f);
   const vec zero = all(0.0);
   int *seen = skin->neighbor + skin->first[f->list->n];
@@ -208,7 +210,7 @@ INLINE void film_inwards(const sd_sph_film *f, const double *surface, const sd_s
     if (surface[4 * (size_t) i + 3] != 0.0) continue;
     const row4 xi = load4(f->x4 + 4 * (size_t) i);
     const int count = IS_DEEP(f, i) ? 0 : skin_of(f, skin->shows, i, seen);
-    if (count && sums_wait(f, i)) late_gradient(f, c, xi, i, whole + 4 * (size_t) i + 1, kernel);
+    if (count && sums_wait(f, i)) late_gradient(f, c, xi, i, rows->whole + 4 * (size_t) i + 1, kernel);
     vec sum = zero, weight = zero;
     for (int at = 0; at < count; at += LANES) {
       const int *j = seen + at;
@@ -218,7 +220,7 @@ INLINE void film_inwards(const sd_sph_film *f, const double *surface, const sd_s
       sum += W * (vec) LANEWISE(VALUE_OF, k);
     }
     const double around = sum_of(weight);
-    rows[SD_SPH_SKIN_SUMS * (size_t) i + 15] = around;
+    rows->turns[SD_SPH_SKIN_SUMS * (size_t) i + 15] = around;
     mean[i] = around > 1e-9 ? sum_of(sum) / around : 0.0;
   }
 }
@@ -245,21 +247,20 @@ static void all_sums(const sd_sph_film *f, double *sums)
     BY_KERNEL(f, sums_without_walls, sums);
 }
 
-static void all_wet_walls(const sd_sph_film *f, const double *contact, const double *sums, double *more)
+static void all_wet_walls(const sd_sph_film *f, const double *contact, const sd_sph_film_rows *rows)
 {
-  BY_KERNEL(f, film_wet_walls, contact, sums, more);
+  BY_KERNEL(f, film_wet_walls, contact, rows);
 }
 
-static void all_turns(const sd_sph_film *f, const double *surface, const double *at_wall, const double *v4,
-                      const sd_sph_skin *skin, double *rows)
+static void all_turns(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *v4, const sd_sph_skin *skin)
 {
-  BY_KERNEL(f, film_turns, surface, at_wall, v4, skin, rows);
+  BY_KERNEL(f, film_turns, rows, v4, skin);
 }
 
-static void all_inwards(const sd_sph_film *f, const double *surface, const sd_sph_skin *skin, const double *k,
-                        double *whole, double *rows, double *mean)
+static void all_inwards(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin, const double *k,
+                        double *mean)
 {
-  BY_KERNEL(f, film_inwards, surface, skin, k, whole, rows, mean);
+  BY_KERNEL(f, film_inwards, rows, skin, k, mean);
 }
 
 const sd_sph_film_loops SD_KERNELS(sd_sph_film_loops) = {all_sums, all_wet_walls, all_turns, film_means, all_inwards};

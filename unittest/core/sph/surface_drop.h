@@ -16,7 +16,8 @@ typedef struct {
   double x4[4 * (MOST + 1)], v4[4 * (MOST + 1)];
   double sums[8 * MOST], beside[8 * MOST], contact[4 * (MOST + 1)], whole[4 * MOST];
   double surface[4 * (MOST + 1)], at_wall[8 * MOST], kappa[MOST + 1], F[3 * MOST], area[MOST];
-  double rows[SD_SPH_SKIN_SUMS * MOST], k[MOST];
+  double turns[SD_SPH_SKIN_SUMS * MOST], k[MOST];
+  sd_sph_film_rows rows;
   size_t first[MOST + 1];
   char shows[MOST + 1];
   sd_sph_skin skin;
@@ -77,6 +78,8 @@ static inline void find_neighbours(drop *s, int walls)
   for (int d = 0; d < 3; d++) s->x4[4 * s->n + d] = 1e10;
   s->list = (sd_sph_both){s->n, s->neighbor, s->own, s->count};
   s->film = (sd_sph_film){&s->plane, &s->list, s->n, s->x4, walls ? s->wall : NULL, NULL, NULL};
+  s->rows = (sd_sph_film_rows){s->sums,    walls ? s->beside : NULL,  s->whole,
+                               s->surface, walls ? s->at_wall : NULL, s->turns};
 }
 
 /* Rings of particles of one volume, as a drop at rest has them; 2-D. */

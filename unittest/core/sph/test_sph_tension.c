@@ -4,25 +4,38 @@
 
 #include "surface_drop.h"
 
+/* The curvatures, with a skin of its own */
+static void bend(drop *s)
+{
+  const size_t room = sd_sph_skin_size(&s->film, &s->rows);
+  free(s->skin.neighbor);
+  free(s->skin.weight);
+  s->skin = (sd_sph_skin){s->first, s->shows, malloc(sizeof(int) * room), malloc(sizeof(double) * room)};
+  sd_sph_film_curvatures(&s->film, &s->rows, s->v4, &s->skin, s->kappa);
+}
+
+/* The curvatures inwards, and the forces of that */
+static void pull(drop *s, double sigma, double friction)
+{
+  const sd_sph_tension how = {sigma, friction};
+  sd_sph_film_inwards(&s->film, &s->rows, &s->skin, s->kappa, s->k);
+  sd_sph_tension_forces(&s->film, &how, &s->rows, s->k, s->F, s->area);
+}
+
 /* Up to the curvatures; angle: of all walls. */
 static void look(drop *s, double angle)
 {
-  const int walls = s->film.wall != NULL;
   double wet[MOST];
-  sd_sph_film_sums(&s->film, s->sums);
-  if (walls) {
-    sd_sph_film_wetness(&s->film, s->sums, wet);
+  sd_sph_film_sums(&s->film, &s->rows);
+  if (s->film.wall) {
+    sd_sph_film_wetness(&s->film, &s->rows, wet);
     for (int i = 0; i < s->n; i++)
       if (s->wall[i])
         memcpy(s->contact + 4 * i, (double[4]){wet[i], cos(angle), sin(angle), 1.0}, 4 * sizeof(double));
-    sd_sph_film_wet_walls(&s->film, s->contact, s->sums, s->beside);
+    sd_sph_film_wet_walls(&s->film, s->contact, &s->rows);
   }
-  sd_sph_film_normals(&s->film, s->sums, walls ? s->beside : NULL, s->whole, s->surface,
-                      walls ? s->at_wall : NULL);
-  const size_t room = sd_sph_skin_size(&s->film, s->surface);
-  s->skin = (sd_sph_skin){s->first, s->shows, malloc(sizeof(int) * room), malloc(sizeof(double) * room)};
-  sd_sph_film_curvatures(&s->film, s->whole, s->surface, walls ? s->at_wall : NULL, s->v4, &s->skin, s->rows,
-                         s->kappa);
+  sd_sph_film_normals(&s->film, &s->rows);
+  bend(s);
 }
 
 static double mean_kappa(const drop *s)
@@ -110,11 +123,11 @@ static void means_keep_a_uniform_curvature(void **state)
   double mean[MOST], ks[MOST];
   int carried = 0;
   for (int i = 0; i < s->n; i++) s->kappa[i] = 0.7;
-  sd_sph_film_means(&s->film, s->surface, &s->skin, s->rows, s->kappa, mean);
-  sd_sph_film_sharpen(&s->film, s->kappa, mean, mean, NULL, ks);
+  sd_sph_film_means(&s->film, &s->rows, &s->skin, s->kappa, mean);
+  sd_sph_film_sharpen(&s->film, &s->rows, s->kappa, mean, mean, ks);
   for (int i = 0; i < s->n; i++)
     if (s->surface[4 * i + 3] > 0.0) CHECK_NEAR(ks[i], 0.7 * (1.0 + 0.16 * 0.2 * 0.7), 1e-14);
-  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->whole, s->rows, s->kappa, s->k);
+  sd_sph_film_inwards(&s->film, &s->rows, &s->skin, s->kappa, s->k);
   for (int i = 0; i < s->n; i++)
     if (s->k[i] != 0.0) {
       CHECK_NEAR(s->k[i], 0.7, 1e-14);
@@ -133,9 +146,9 @@ static void the_deep_is_out_of_reach_and_bears_nothing(void **state)
   disk(s, 1.5, 0.06, 0.3, -7.0);
   find_neighbours(s, 0);
   look(s, 0.0);
-  const sd_sph_tension how = {2.5, 0.1};
-  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->whole, s->rows, s->kappa, s->k);
-  sd_sph_tension_forces(&s->film, &how, s->whole, s->surface, s->rows, s->k, F, area);
+  pull(s, 2.5, 0.1);
+  memcpy(F, s->F, sizeof(F));
+  memcpy(area, s->area, sizeof(area));
   for (int i = 0; i < s->n; i++) marked[i] = !(inside[i] = !(s->surface[4 * i + 3] > 0.0));
   sd_sph_find_deep(s->n, s->n, s->x4, marked, 0.24, grid, deep);
   int found = 0;
@@ -146,11 +159,8 @@ static void the_deep_is_out_of_reach_and_bears_nothing(void **state)
   assert_true(found > s->n / 5);
   s->film.inside = inside;
   s->film.deep = deep;
-  free(s->skin.neighbor);
-  free(s->skin.weight);
   look(s, 0.0);
-  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->whole, s->rows, s->kappa, s->k);
-  sd_sph_tension_forces(&s->film, &how, s->whole, s->surface, s->rows, s->k, s->F, s->area);
+  pull(s, 2.5, 0.1);
   for (int i = 0; i < s->n; i++) CHECK_NEAR(s->area[i], area[i], 1e-14);
   for (int i = 0; i < 3 * s->n; i++) CHECK_NEAR(s->F[i], F[i], 1e-14);
 }
@@ -167,13 +177,9 @@ static void a_lone_particle_has_its_own_curvature(void **state)
   assert_true(s->surface[3] > 0.0 && s->surface[7] > 0.0);
   double mean[2] = {NAN, NAN};
   s->surface[7] = 0.0;    // as of a particle inside
-  free(s->skin.neighbor);
-  free(s->skin.weight);
-  const size_t room = sd_sph_skin_size(&s->film, s->surface);
-  s->skin = (sd_sph_skin){s->first, s->shows, malloc(sizeof(int) * room), malloc(sizeof(double) * room)};
-  sd_sph_film_curvatures(&s->film, s->whole, s->surface, NULL, s->v4, &s->skin, s->rows, s->kappa);
+  bend(s);
   s->kappa[0] = 0.7;
-  sd_sph_film_means(&s->film, s->surface, &s->skin, s->rows, s->kappa, mean);
+  sd_sph_film_means(&s->film, &s->rows, &s->skin, s->kappa, mean);
   CHECK_NEAR(mean[0], 0.7, 1e-15);
   CHECK_NEAR(mean[1], 0.0, 0.0);
 }
@@ -189,7 +195,7 @@ static void means_are_sums_over_the_surface(void **state)
   look(s, 0.0);
   double mean[MOST];
   for (int i = 0; i < s->n; i++) s->kappa[i] = uniform(&seed, 1.0, 2.0);
-  sd_sph_film_means(&s->film, s->surface, &s->skin, s->rows, s->kappa, mean);
+  sd_sph_film_means(&s->film, &s->rows, &s->skin, s->kappa, mean);
   for (int i = 0; i < s->n; i++) {
     double sum = 0.0, whole = 0.0;
     for (int j = 0; j < s->n; j++) {
@@ -211,10 +217,10 @@ static void a_uniform_curvature_pushes_as_a_pressure(void **state)
   disk(s, 1.0, 0.1, 0.0, 0.0);
   find_neighbours(s, 0);
   look(s, 0.0);
-  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->whole, s->rows, s->kappa, s->k);
+  sd_sph_film_inwards(&s->film, &s->rows, &s->skin, s->kappa, s->k);
   for (int i = 0; i < s->n; i++) s->k[i] = 0.7;
   const sd_sph_tension how = {2.5, 0.0};
-  sd_sph_tension_forces(&s->film, &how, s->whole, s->surface, s->rows, s->k, s->F, s->area);
+  sd_sph_tension_forces(&s->film, &how, &s->rows, s->k, s->F, s->area);
   double whole = 0.0;
   for (int i = 0; i < s->n; i++) whole += s->area[i];
   CHECK_NEAR(whole, 6.283, 0.4);
@@ -240,11 +246,11 @@ static void friction_of_the_surface_keeps_momentum_and_its_moment_and_takes_ener
     for (int d = 0; d < 2; d++) s->v4[4 * i + d] = uniform(&seed, -1.0, 1.0);
   find_neighbours(s, 0);
   look(s, 0.0);
-  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->whole, s->rows, s->kappa, s->k);
+  sd_sph_film_inwards(&s->film, &s->rows, &s->skin, s->kappa, s->k);
   memset(s->k, 0, sizeof(s->k));
   double sum[3] = {0.0}, size = 0.0, power = 0.0;
   const sd_sph_tension how = {2.5, 0.3};
-  sd_sph_tension_forces(&s->film, &how, s->whole, s->surface, s->rows, s->k, s->F, s->area);
+  sd_sph_tension_forces(&s->film, &how, &s->rows, s->k, s->F, s->area);
   for (int i = 0; i < s->n; i++) {
     const double *x = s->x4 + 4 * i, *F = s->F + 3 * i;
     sum[0] += F[0];
@@ -341,15 +347,15 @@ static void a_uniform_pressure_holds_a_drop_on_its_wall(void **state)
   find_neighbours(s, 1);
   look(s, 2.0);
   static double P[MOST], wet[3 * MOST];
-  sd_sph_film_inwards(&s->film, s->surface, &s->skin, s->whole, s->rows, s->kappa, s->k);
+  sd_sph_film_inwards(&s->film, &s->rows, &s->skin, s->kappa, s->k);
   for (int i = 0; i < s->n; i++) {
     s->k[i] = k;
     P[i] = i % 2 ? sigma * k : 3.0 * sigma * k;
   }
   const sd_sph_tension how = {sigma, 0.0};
-  sd_sph_tension_forces(&s->film, &how, s->whole, s->surface, s->rows, s->k, s->F, s->area);
+  sd_sph_tension_forces(&s->film, &how, &s->rows, s->k, s->F, s->area);
   memcpy(wet, s->F, sizeof(wet));
-  sd_sph_dry_walls(&s->film, sigma, s->sums, s->whole, s->k, P, s->F);
+  sd_sph_dry_walls(&s->film, sigma, &s->rows, s->k, P, s->F);
   double dry = 0.0;
   for (int i = 0; i < s->n; i++) {
     if (s->wall[i]) continue;
