@@ -3,6 +3,7 @@
 
 #include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
+#include "sd_sphere.h"
 
 #include "atom.h"
 #include "update.h"
@@ -62,7 +63,7 @@ void FixSphGrains::weigh()
   M.resize(n + 1);
   for (size_t j = 0; j < n; j++) {
     a[j] = atom->radius[around.grains[j]];
-    V[j] = sd_sph_sphere(a[j]);
+    V[j] = sd_sphere_volume(a[j]);
     M[j] = atom->mask[around.grains[j]] & free_bits & ~held_bits ? atom->rmass[around.grains[j]] : HUGE_VAL;
   }
   volume.resize(m + 1);

@@ -27,15 +27,13 @@ FixHydroVans::Columns::Columns(const VansSettings &set, const Resume &resume)
   all += resume.columns();
   if (set.conserve) add(account, sizeof(sd_vans_account));
   if (set.overlap_once) add(lost, sizeof(double));
-  if (set.fluctuates())
-    add(eddy, set.fluctuation == VansSettings::LANGEVIN ? sizeof(sd_vans_wander)
-                                                        : sizeof(sd_vans_eddy));
+  if (set.fluctuates()) add(eddy, VansFluctuations::carried(set) * sizeof(double));
   if (set.law.added_mass > 0.0) add(motion, sizeof(Motion));
 }
 
 FixHydroVans::FixHydroVans(LAMMPS *lmp, int narg, char **arg) :
     RowsFix(lmp, narg, arg), set(lmp, words(narg, arg)), stream(set), out(OUTPUTS),
-    resume(lmp, false), column(set, resume), memo(column.all)
+    resume(lmp, false), column(set, resume), memo(column.all), fluctuations(stream), overlaps(set.voice)
 {
   nevery = set.every;
   check_box();
@@ -192,7 +190,7 @@ void FixHydroVans::setup(int vflag)
     if (set.couple == VansSettings::TWO) check_mesh();
     tell_waves();
   }
-  if (set.fluctuates() && eddies.renewals == 0.0) {
+  if (set.fluctuates() && fluctuations.eddies.renewals == 0.0) {
     read_variables();
     renew_fluctuations(0.0, true);
   }

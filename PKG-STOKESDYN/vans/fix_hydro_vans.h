@@ -4,10 +4,11 @@
 #ifndef SD_FIX_HYDRO_VANS_H
 #define SD_FIX_HYDRO_VANS_H
 
+#include "clump_overlaps.h"
 #include "neighbours.h"
 #include "resume.h"
 #include "rows_fix.h"
-#include "sd_vans_random.h"
+#include "vans_fluctuations.h"
 #include "vans_stream.h"
 
 namespace LAMMPS_NS {
@@ -70,12 +71,10 @@ class FixHydroVans : public RowsFix {
   sd_vans_account *account(int i) { return (sd_vans_account *) (memo.writable(i) + column.account); }
 
   /* The same on all ranks and in the restart file; last_step: of the forces in array_atom; elapsed:
-   * since the last coupling; eddies: the random walk of all grains at once. */
+   * since the last coupling. */
   LAMMPS_NS::bigint last_step = -1;
   double elapsed = 0.0;
-  struct {
-    double age = 0.0, period = 0.0, renewals = 0.0;
-  } eddies;
+  VansFluctuations fluctuations;
   struct {
     double radius = 0.0, density = 0.0;
   } mean;
@@ -97,8 +96,7 @@ class FixHydroVans : public RowsFix {
   /* of the last look at the grains' time step */
   LAMMPS_NS::bigint looked_step = -1;
 
-  /* of the members of clumps when their overlaps were counted; 0: never */
-  uint64_t members_counted = 0;
+  ClumpOverlaps overlaps;
   std::vector<unsigned char> take;
   std::vector<double> F, drag_x, u, weight, work, acceleration;
 
@@ -144,10 +142,6 @@ class FixHydroVans : public RowsFix {
   VansStream::Given impulses(double ratio);
   void hand_over();
   void renew_fluctuations(double time, bool first);
-  void renew_eddies(double time, bool first);
-  void walk_on(double time, bool first);
-  template <class Renew> void fluctuate(const Renew &renew);
-  uint64_t members() const;
   void count_overlaps();
 
   double steady(int k) const;

@@ -2,17 +2,13 @@
 
 #include "ranks.h"
 #include "sd_constants.h"
-#include "sd_hash.h"
-#include "sd_lattice.h"
 
 #include "atom.h"
-#include "domain.h"
 #include "region.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 
 using namespace LAMMPS_NS;
@@ -66,73 +62,15 @@ int FixHydroVans::forces(const sd_vans_grains &all, bool accelerated)
   return sd_vans_forces(&ambient, &grains, F.data(), drag_x.data());
 }
 
-/* Tells one set of members of clumps from another, in any order and on any ranks: IDs, molecules,
- * radii. */
-uint64_t FixHydroVans::members() const
-{
-  uint64_t mine = 1, all = 0;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & average_bit) || atom->molecule[i] == 0) continue;
-    uint64_t radius;
-    memcpy(&radius, &atom->radius[i], sizeof(radius));
-    const uint64_t tag = sd_hash_mix((uint64_t) atom->tag[i] + SD_HASH_STEP);
-    mine += sd_hash_mix(sd_hash_mix(tag ^ (uint64_t) atom->molecule[i]) ^ radius);
-  }
-  for (uint64_t part : from_all(world, std::vector<uint64_t>(1, mine))) all += part;
-  return all;
-}
-
-namespace {
-struct Member {
-  tagint molecule, tag;
-  double x[3], a;
-};
-}    // namespace
-
-/* The share of each of the members [n] of a clump in the volume of their union, by tag. Seen from each
- * the others stand at their nearest image: what overlaps it is near. */
-static void add_shares(const Voice &voice, const Domain *domain, const Member *clump, size_t n,
-                       std::map<tagint, double> &share)
-{
-  std::vector<double> x(3 * n), a(n);
-  for (size_t k = 0; k < n; k++) {
-    for (size_t j = 0; j < n; j++) {
-      for (int d = 0; d < 3; d++) x[3 * j + d] = clump[j].x[d] - clump[k].x[d];
-      sd_closest_image(domain->h, domain->periodicity, &x[3 * j]);
-      a[j] = clump[j].a;
-    }
-    const double part = sd_vans_union_share((int) n, x.data(), a.data(), (int) k);
-    if (part < 0.0)
-      voice.fail_one("keyword overlap: out of memory for a clump of " + std::to_string(n) + " members");
-    share[clump[k].tag] = part;
-  }
-}
-
-/* What each member of a clump loses to others. Once for every set of members: clumps are rigid. */
+/* What each member of a clump loses to others */
 void FixHydroVans::count_overlaps()
 {
-  const uint64_t now = members();
-  if (now == members_counted) return;
-  members_counted = now;
-  std::vector<Member> mine;
+  if (!overlaps.are_new(average_bit)) return;
+  const std::map<tagint, double> lost = overlaps.lost(average_bit);
   for (int i = 0; i < atom->nlocal; i++) {
-    const double *x = atom->x[i];
     if (memo.has(i)) memo.row(i)[column.lost] = 0.0;
-    if (atom->molecule[i] != 0 && (atom->mask[i] & average_bit) && atom->radius[i] > 0.0)
-      mine.push_back({atom->molecule[i], atom->tag[i], {x[0], x[1], x[2]}, atom->radius[i]});
-  }
-  auto all = from_all(world, mine);
-  std::sort(all.begin(), all.end(), [](const Member &p, const Member &q) {
-    return p.molecule != q.molecule ? p.molecule < q.molecule : p.tag < q.tag;
-  });
-  std::map<tagint, double> share;
-  for (size_t begin = 0, end; begin < all.size(); begin = end) {
-    for (end = begin; end < all.size() && all[end].molecule == all[begin].molecule; end++) {}
-    add_shares(set.voice, domain, &all[begin], end - begin, share);
-  }
-  for (int i = 0; i < atom->nlocal; i++) {
-    const auto at = share.find(atom->tag[i]);
-    if (at != share.end()) memo.writable(i)[column.lost] = 1.0 - at->second;
+    const auto at = lost.find(atom->tag[i]);
+    if (at != lost.end()) memo.writable(i)[column.lost] = at->second;
   }
 }
 
@@ -298,67 +236,15 @@ void FixHydroVans::hand_over()
   }
 }
 
-/* Velocity fluctuations: new ones when their time is over. The random numbers depend on seed, atom
- * ID and the number of the renewal. */
+/* time: since the last call */
 void FixHydroVans::renew_fluctuations(double time, bool first)
 {
-  if (set.fluctuation == VansSettings::LANGEVIN)
-    walk_on(time, first);
-  else
-    renew_eddies(time, first);
-}
-
-/* renew(i, what the grain carries, its fluctuation) for every grain; the others have none. */
-template <class Renew> void FixHydroVans::fluctuate(const Renew &renew)
-{
-  eddies.renewals += 1.0;
+  const VansFluctuations::Renew renew = fluctuations.after(time, nevery * update->dt, first);
+  if (!renew) return;
   select(groupbit);
   for (int i = 0; i < atom->nlocal; i++)
     if (take[i])
-      renew(i, memo.writable(i) + column.eddy, out.writable(i) + FLUCTUATION);
+      renew(atom->x[i][2], (uint64_t) atom->tag[i], memo.writable(i) + column.eddy, out.writable(i) + FLUCTUATION);
     else if (out.has(i))
       std::fill_n(out.writable(i) + FLUCTUATION, 3, 0.0);
-}
-
-void FixHydroVans::renew_eddies(double time, bool first)
-{
-  const double bed = stream.bed_elevation();
-  bool all = first;
-  if (set.fluctuation != VansSettings::DEPTH) {
-    eddies.age += time;
-    if (!first && eddies.age < eddies.period * (1.0 - 1e-9)) return;
-    all = true;
-    eddies.age = 0.0;
-    eddies.period = set.renewal > 0.0
-        ? set.renewal
-        : sd_vans_depth_over_velocity(&stream.wet, stream.U.data(), bed);
-  }
-  const std::vector<double> u_star = stream.friction_velocities();
-  const sd_vans_walk walk = {
-      set.seed,
-      set.fluctuation != VansSettings::UNCORRELATED,
-      bed,
-      u_star.data(),
-      sd_vans_longest_life(&stream.wet, &stream.fluid, stream.stress.data()),
-      nevery * update->dt};
-  fluctuate([&](int i, double *carried, double *fluctuation) {
-    sd_vans_eddy *eddy = (sd_vans_eddy *) carried;
-    eddy->life -= time;
-    if (all || !(eddy->life > 1e-9 * time))
-      sd_vans_new_eddy(&set.mesh, set.fluid.eta / set.fluid.rho, &walk, atom->x[i][2],
-                       (uint64_t) atom->tag[i], eddy, fluctuation);
-  });
-}
-
-/* A step of the Langevin walk of every grain, over the time since the last coupling. */
-void FixHydroVans::walk_on(double time, bool first)
-{
-  const std::vector<double> u_star = stream.friction_velocities(),
-                            life = stream.lagrangian_times(u_star);
-  const sd_vans_langevin walk = {set.seed, stream.bed_elevation(), u_star.data(), life.data(),
-                                 first ? HUGE_VAL : time, stream.wet.ncell - 1};
-  fluctuate([&](int i, double *carried, double *fluctuation) {
-    sd_vans_langevin_step(&set.mesh, &walk, atom->x[i][2], (uint64_t) atom->tag[i],
-                          (sd_vans_wander *) carried, fluctuation);
-  });
 }

@@ -185,7 +185,7 @@ static std::vector<double> layout(const VansSettings &set)
 std::vector<SavedNumbers> FixHydroVans::saved()
 {
   return {{"elapsed", &elapsed},
-          {"eddies", &eddies.age, 3},
+          {"eddies", &fluctuations.eddies.age, 3},
           {"mean", &mean.radius, 2},
           {"pressed", &local.pressure, 2, true}};
 }

@@ -3,6 +3,7 @@
 
 #include "gravity.h"
 #include "neighbours_vans.h"
+#include "sd_sphere.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -51,7 +52,7 @@ void FixHydroVans::tell_fall()
   std::set<long> seen;
   for (int i = 0; i < atom->nlocal; i++) {
     const double a = atom->radius[i], m = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]],
-                 weight = g * std::fabs(m - 4.0 / 3.0 * SD_PI * a * a * a * rho);
+                 weight = g * std::fabs(m - sd_sphere_volume(a) * rho);
     if (!take[i] || !(weight > 0.0) || !seen.insert(std::lround(100.0 * std::log(weight))).second) continue;
     const double w = sd_fall_speed(alone, rho, eta, a, weight),
                  right = sd_fall_speed(sphere, rho, eta, a, weight);

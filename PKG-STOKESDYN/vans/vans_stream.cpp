@@ -97,9 +97,8 @@ void VansStream::mixing_length()
     for (size_t c = 0; c < class_radii.size(); c++)
       std::copy_n(&class_grain[c * profile], wet.ncell, &of_classes[c * wet_profile]);
   }
-  sd_vans_mixing_length(&wet, &fluid, U.data(), phi(),
-                        of_classes.empty() ? classes() : of_classes.data(), mean.data(),
-                        length.data(), scratch.data());
+  const sd_vans_mixture now = {U.data(), phi(), of_classes.empty() ? classes() : of_classes.data(), mean.data()};
+  sd_vans_mixing_length(&wet, &fluid, &now, length.data(), scratch.data());
 }
 
 void VansStream::profile_changed()
@@ -184,25 +183,14 @@ void VansStream::fill_above()
   for (int n = M + 1; n < N; n++) b[n] = length[n] = nut[n] = stress[n] = 0.0;
 }
 
-/* With the depth adjusted: what comes into the reach in the time T and does not pass stays there,
- * dV/dt = (q - U V)/reach per width, U the mean speed; implicit, for any T. A stream along -x comes
+/* With the depth adjusted: what comes into the reach and does not pass stays there. A stream along -x comes
  * in at the other end. The surface moves with the next averages. */
 void VansStream::take_inflow(double T)
 {
   if (set.reach == 0.0 || volume < 0.0) return;
   const double along = std::copysign(1.0, fluid.discharge),
-               passes = along * sd_vans_momentum(&wet, 1.0, phi(), U.data()),
-               speed = std::max(passes / volume, 0.0);
-  volume += T * (along * fluid.discharge - passes) / (set.reach + T * speed);
-}
-
-/* What belongs to grains above the surface goes to the water below it. */
-void VansStream::fold_above(std::vector<double> &of_slices) const
-{
-  for (int n = wet.ncell; n < ncell(); n++) {
-    of_slices[wet.ncell - 1] += of_slices[n];
-    of_slices[n] = 0.0;
-  }
+               passes = along * sd_vans_momentum(&wet, 1.0, phi(), U.data());
+  volume = sd_vans_inflow(volume, along * fluid.discharge, passes, set.reach, T);
 }
 
 void VansStream::feel_pressure(double gx)
@@ -273,9 +261,7 @@ double VansStream::give_back(double area, double T, const Given &given, std::vec
 {
   std::vector<double> back = given.back;
   source.resize(ncell());
-  fold_above(back);
-  fold_above(outstanding);
-  return sd_vans_give_back(&wet, fluid.rho * area, T, back.data(), outstanding.data(), source.data());
+  return sd_vans_give_back(&wet, ncell(), fluid.rho * area, T, back.data(), outstanding.data(), source.data());
 }
 
 /* What passed in a solve, into the ledger; without the part of `rest`, which is no momentum of grains */
@@ -341,9 +327,6 @@ std::vector<double> VansStream::friction_velocities() const
   if (!set.intensities.empty()) return set.intensities;
   std::vector<double> u_star(ncell(), intensity);
   if (set.intensity_given) return u_star;
-  for (int n = 0; n < ncell(); n++) {
-    const double size = set.yade() ? std::max(stress[n], 0.0) : std::fabs(stress[n]);
-    u_star[n] = std::copysign(std::sqrt(size / fluid.rho), stress[n]);
-  }
+  sd_vans_friction_velocities(&fluid, ncell(), stress.data(), u_star.data());
   return u_star;
 }

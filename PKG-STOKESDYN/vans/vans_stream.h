@@ -137,7 +137,6 @@ class VansStream {
   void move_surface(double area, const std::vector<double> &phi_before);
   void take_inflow(double T);
   void fill_above();
-  void fold_above(std::vector<double> &of_slices) const;
   void mixing_length();
   void exchange(double T, double dt, bool held, std::vector<double> &rest);
   double give_back(double area, double T, const Given &given, std::vector<double> &source);

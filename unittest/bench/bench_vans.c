@@ -42,7 +42,8 @@ static double fluid(int N, sd_vans_rules rules, double width, int account)
                            .wall_coef = 1,
                            .radius = 0.003,
                            .rules = rules};
-  sd_vans_mixing_length(&mesh, &f, U, phi, NULL, phi, length, scratch);
+  const sd_vans_mixture now = {U, phi, NULL, phi};
+  sd_vans_mixing_length(&mesh, &f, &now, length, scratch);
   sd_vans_solver *solver = sd_vans_solver_create(&mesh);
   const sd_vans_column column = {phi, vx, b, length, NULL};
   const sd_vans_flow flow = {U, nut, stress};

@@ -2,6 +2,7 @@
 
 #include "sd_constants.h"
 #include "sd_linear.h"
+#include "sd_sphere.h"
 
 #include <math.h>
 #include <string.h>
@@ -184,11 +185,6 @@ void sd_sph_grain_shares(const sd_sph_around *list, const sd_sph_grains *grains,
   }
 }
 
-double sd_sph_sphere(double a)
-{
-  return 4.0 / 3.0 * SD_PI * a * a * a;
-}
-
 // --- forces --------------------------------------------------------------------------------------
 
 /* By iteration from above: s falls by 8 phi for small phi, so that each round leaves 8 own of an
@@ -220,7 +216,7 @@ static double drag_of(const sd_sph_grain_law *law, double rho, double a, double 
   const double k = (1.0 - phi) * sd_drag_factor(law->drag, rho, law->eta, a, hindrance, slip);
   *taken = 0.0;
   if (!law->wake) return k;
-  const double h = law->h, crowd = phi / sd_sph_sphere(a) * k * h * h / law->eta,
+  const double h = law->h, crowd = phi / sd_sphere_volume(a) * k * h * h / law->eta,
                T = sd_sph_wake_of(law->wake, rho * h * slip / law->eta, sqrt(crowd));
   *taken = fmin(0.5, sd_sph_structure(phi) * T * k / (6.0 * SD_PI * law->eta * h));
   return k;

@@ -149,9 +149,6 @@ void sd_sph_grain_drags(const sd_sph_around *list, double dt, const sd_sph_slip 
 /* Takes w_aj F_j from reaction [3m]. */
 void sd_sph_grain_reactions(const sd_sph_around *list, const double *F, double *reaction);
 
-/* Volume of a grain of radius a. */
-double sd_sph_sphere(double a);
-
 /* The rates [n] of a density that would follow q become those of the water: divided by eps, but
  * for what shift adds, du.grad rho; slope and du as of sd_sph_particles, du NULL: no shift. */
 void sd_sph_grain_rates(int n, const double *phi, const double *slope, const double *du, double *rate);

@@ -86,11 +86,19 @@ typedef struct {
 /* What drives the stream, an acceleration: gx - dpdx/rho. Yade's rule: |gx| for gx. */
 double sd_vans_drive(const sd_vans_fluid *fluid);
 
+/* What the laws of the mixing length ask of water and grains */
+typedef struct {
+  /* [N+1] velocity of the water (rousseau) */
+  const double *U;
+  /* [N] phi; and of each class, rows of SD_VANS_ROWS N, NULL: one class */
+  const double *phi, *classes;
+  /* [N] the (time-averaged) phi that marks the bed (ni_capart) */
+  const double *bed;
+} sd_vans_mixture;
+
 /* Mixing length at every node, [N]; at least bed_mixing times the mean diameter of the grains in the
  * slices on both sides of the node, but for that on the bottom; between narrow walls at most
- * kappa width/2.
- *   U [N+1] (Rousseau only); phi [N]; phi_bed_profile [N]: the (time-averaged) phi that marks the
- *   bed for Ni & Capart; scratch [2 N]
+ * kappa width/2. scratch [2 N]
  * kz           kappa z
  * parabolic    kappa z sqrt(1 - z/H)
  * li_sawamoto  l_j = l_(j-1) + kappa dz (phi_max - p)/phi_max, p = phi of slice j-1 but phi_max
@@ -101,9 +109,8 @@ double sd_vans_drive(const sd_vans_fluid *fluid);
  * ni_capart    max(min(pore/2, 0.2 D), kappa (z - z_bed))
  * pipe         min(li_sawamoto, kappa (H - z))
  * Yade's rule: the slice that exceeds phi_max takes some length away (li_sawamoto, pipe). */
-void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
-                           const double *phi, const double *classes, const double *phi_bed_profile,
-                           double *length, double *scratch);
+void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
+                           const sd_vans_mixture *now, double *length, double *scratch);
 
 /* Effective kinematic viscosity at a node of solid fraction phi: eta/rho times 1 (constant),
  * 1 + 2.5 phi (Einstein), (1 - phi)^-2.8 (power: Krieger & Dougherty's form). Yade's rule has
@@ -266,6 +273,11 @@ int sd_vans_fill(const sd_vans_mesh *mesh, const double *phi, double volume, dou
  * one mesh, or two of sd_vans_fill where the surface has moved. scratch [2 (N+1)] */
 double sd_vans_displace(const sd_vans_mesh *from, const sd_vans_mesh *to, double rho,
                         const double *phi_old, const double *phi_new, double *U, double *scratch);
+
+/* The volume of the water per area after the time T, in a reach of this length into which `comes` flows per
+ * width and time, and from which `passes`, at the mean speed of the water: dV/dt = (comes - passes)/reach,
+ * implicit in the speed, for any T. */
+double sd_vans_inflow(double volume, double comes, double passes, double reach, double T);
 
 /* Water and grains together rise with the flux q, e w + phi v = q: w = q + phi (w - v), upward [N] in
  * and out. With the w of before on the right this is the solution after a few couplings, whose mean v

@@ -5,11 +5,22 @@
  * is on its way stays below ten couplings' worth. */
 static const double RETURNED = 0.1;
 
-double sd_vans_give_back(const sd_vans_mesh *mesh, double rho_area, double T, const double *back,
+/* What is in slices that the mesh of the water has not got goes to its last one. */
+static void fold_above(int N, int all, double *momentum)
+{
+  for (int n = N; n < all; n++) {
+    momentum[N - 1] += momentum[n];
+    momentum[n] = 0.0;
+  }
+}
+
+double sd_vans_give_back(const sd_vans_mesh *mesh, int all, double rho_area, double T, double *back,
                          double *outstanding, double *source)
 {
   const int N = mesh->ncell, M = N - 1;
   double returned = 0.0;
+  fold_above(N, all, back);
+  fold_above(N, all, outstanding);
   /* the slice above the surface has no water */
   for (int n = 0; n < N; n++) outstanding[n < M ? n : M - 1] += back[n];
   for (int n = 0; n < M; n++) {

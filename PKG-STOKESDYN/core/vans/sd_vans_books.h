@@ -44,11 +44,11 @@ static inline double sd_vans_account_rest(const sd_vans_account *account, double
 
 /* A tenth of what is outstanding goes back at a time: the differences of single couplings are
  * mostly noise, which would shake the water of a dense bed.
- *   back         [N] momentum that the grains of each slice have left since the last solve; what is
- *                above the surface goes to the slice below it
- *   outstanding  [N] in and out, momentum;   source [N] out, for a solve over the time T
+ *   all          slices of the grains, N or more; what is above the surface goes to the slice below it
+ *   back         [all] momentum that the grains of each slice have left since the last solve
+ *   outstanding  [all] in and out, momentum;   source [N] out, for a solve over the time T
  * Returns the momentum that goes back in this solve. */
-double sd_vans_give_back(const sd_vans_mesh *mesh, double rho_area, double T, const double *back,
+double sd_vans_give_back(const sd_vans_mesh *mesh, int all, double rho_area, double T, double *back,
                          double *outstanding, double *source);
 
 /* What the solve took from the water, per volume of grains: shear [N] as a force, foreseen [N] as

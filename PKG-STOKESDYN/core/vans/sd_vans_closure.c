@@ -1,39 +1,47 @@
 #include "sd_constants.h"
+#include "sd_sphere.h"
 #include "sd_vans.h"
 
 #include <math.h>
 #include <stddef.h>
 
-/* Volume and surface of all grains in slice n over the volume of the slice: phi_c/V_c grains of
- * class c. For one class the ratio is the same whatever their number. */
-static void volume_and_surface(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
-                               const double *phi, const double *classes, int n, double *VA,
-                               double *SA)
+/* Volume and surface of many grains */
+typedef struct {
+  double V, S;
+} bulk;
+
+static void add_grains(double number, double a, bulk *sum)
 {
-  const long profile = (long) SD_VANS_ROWS * mesh->ncell;
-  *VA = *SA = 0.0;
-  for (int c = 0; c < (classes ? fluid->nclass : 1); c++) {
-    const double a = classes ? fluid->class_radius[c] : fluid->radius,
-                 share = classes ? classes[c * profile + n] : phi[n],
-                 V = 4.0 / 3.0 * SD_PI * a * a * a;
-    /* Yade takes phi for the number of grains, which is so for one size alone. */
-    const double number = fluid->rules == SD_VANS_YADE ? share : share / V;
-    *VA += number * V;
-    *SA += number * 4.0 * SD_PI * a * a;
-  }
+  sum->V += number * sd_sphere_volume(a);
+  sum->S += number * 4.0 * SD_PI * a * a;
 }
 
-/* Pore length of every slice and, for D not NULL, the mean diameter 6 VA/SA. */
-static void pore_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
-                        const double *classes, double *pore, double *D)
+/* Of all grains in slice n over the volume of the slice: phi_c/V_c grains of class c. For one class the ratio is the
+ * same whatever their number. */
+static bulk bulk_of_slice(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const sd_vans_mixture *now, int n)
 {
+  const long profile = (long) SD_VANS_ROWS * mesh->ncell;
+  bulk sum = {0.0, 0.0};
+  for (int c = 0; c < (now->classes ? fluid->nclass : 1); c++) {
+    const double a = now->classes ? fluid->class_radius[c] : fluid->radius,
+                 share = now->classes ? now->classes[c * profile + n] : now->phi[n];
+    /* Yade takes phi for the number of grains, which is so for one size alone. */
+    add_grains(fluid->rules == SD_VANS_YADE ? share : share / sd_sphere_volume(a), a, &sum);
+  }
+  return sum;
+}
+
+/* Pore length of every slice and, for D not NULL, the mean diameter 6 V/S. */
+static void pore_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const sd_vans_mixture *now,
+                        double *pore, double *D)
+{
+  const double *phi = now->phi;
   for (int n = 0; n < mesh->ncell; n++) {
-    double VA, SA;
-    volume_and_surface(mesh, fluid, phi, classes, n, &VA, &SA);
+    const bulk grains = bulk_of_slice(mesh, fluid, now, n);
     /* volume of pores over surface of grains; phi below 1e-3 is clear water */
     pore[n] = (1.0 - phi[n]) / fmax(phi[n], 1e-3);
-    if (SA > 0.0) pore[n] *= VA / SA;
-    if (D) D[n] = SA > 0.0 ? 6.0 * VA / SA : 0.0;
+    if (grains.S > 0.0) pore[n] *= grains.V / grains.S;
+    if (D) D[n] = grains.S > 0.0 ? 6.0 * grains.V / grains.S : 0.0;
   }
 }
 
@@ -72,15 +80,13 @@ static void rousseau(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const
                      const double *phi, double *length)
 {
   const double nu = fluid->eta / fluid->rho;
-  double V = 0.0, S = 0.0;
+  bulk bed = {0.0, 0.0};
   for (int c = 0; c < (fluid->nclass ? fluid->nclass : 1); c++) {
-    const double a = fluid->nclass ? fluid->class_radius[c] : fluid->radius,
-                 of_one = 4.0 / 3.0 * SD_PI * a * a * a,
-                 number = fluid->class_volume ? fluid->class_volume[c] / of_one : 1.0;
-    V += number * of_one;
-    S += number * 4.0 * SD_PI * a * a;
+    const double a = fluid->nclass ? fluid->class_radius[c] : fluid->radius;
+    add_grains(fluid->class_volume ? fluid->class_volume[c] / sd_sphere_volume(a) : 1.0, a, &bed);
   }
-  const double pore = S > 0.0 ? (1.0 - fluid->phi_max) / fluid->phi_max * V / S : 0.0;    // 0: there are no grains
+  /* 0: there are no grains */
+  const double pore = bed.S > 0.0 ? (1.0 - fluid->phi_max) / fluid->phi_max * bed.V / bed.S : 0.0;
   double zv = 0.0;
   length[0] = 0.0;
   for (int j = 1; j < mesh->ncell; j++) {
@@ -104,9 +110,8 @@ static void down_to_pores(const sd_vans_mesh *mesh, double kappa, const double *
   }
 }
 
-static void unlimited_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
-                             const double *phi, const double *classes,
-                             const double *phi_bed_profile, double *length, double *scratch)
+static void unlimited_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const sd_vans_mixture *now,
+                             double *length, double *scratch)
 {
   const int N = mesh->ncell;
   const double *z = mesh->edge, H = z[N - 1], kappa = fluid->kappa;
@@ -123,23 +128,23 @@ static void unlimited_length(const sd_vans_mesh *mesh, const sd_vans_fluid *flui
       length[N - 1] = 0.0;
       break;
     case SD_VANS_LI_SAWAMOTO:
-      li_sawamoto(mesh, fluid, phi, length);
+      li_sawamoto(mesh, fluid, now->phi, length);
       break;
     case SD_VANS_PIPE:
-      li_sawamoto(mesh, fluid, phi, length);
+      li_sawamoto(mesh, fluid, now->phi, length);
       for (int j = 0; j < N; j++) length[j] = fmin(length[j], kappa * (H - z[j]));
       break;
     case SD_VANS_PORE:
-      pore_length(mesh, fluid, phi, classes, pore, NULL);
+      pore_length(mesh, fluid, now, pore, NULL);
       down_to_pores(mesh, kappa, pore, length);
       break;
     case SD_VANS_ROUSSEAU:
-      rousseau(mesh, fluid, U, phi, length);
+      rousseau(mesh, fluid, now->U, now->phi, length);
       break;
     case SD_VANS_NI_CAPART: {
-      pore_length(mesh, fluid, phi, classes, pore, D);
+      pore_length(mesh, fluid, now, pore, D);
       /* in the bed the pores set the length, above it the distance from its top */
-      const double bed = top_of_bed(mesh, phi_bed_profile, fluid->phi_bed);
+      const double bed = top_of_bed(mesh, now->bed, fluid->phi_bed);
       for (int j = 0; j < N; j++)
         length[j] = fmax(fmin(0.5 * pore[j], 0.2 * D[j]), kappa * (z[j] - bed));
       break;
@@ -149,21 +154,20 @@ static void unlimited_length(const sd_vans_mesh *mesh, const sd_vans_fluid *flui
 
 /* Eddies between grains that move: where a stream shears the grains themselves its mixing length was
  * measured to be about half a diameter, at any phi (Revil-Baudard et al. 2015). */
-static void among_grains(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
-                         const double *classes, double *length, double *pore, double *D)
+static void among_grains(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const sd_vans_mixture *now,
+                         double *length, double *scratch)
 {
-  pore_length(mesh, fluid, phi, classes, pore, D);
+  double *pore = scratch, *D = scratch + mesh->ncell;
+  pore_length(mesh, fluid, now, pore, D);
   for (int j = 1; j < mesh->ncell; j++)
     length[j] = fmax(length[j], fluid->bed_mixing * fmax(D[j - 1], D[j]));
 }
 
-void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,
-                           const double *phi, const double *classes, const double *phi_bed_profile,
+void sd_vans_mixing_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const sd_vans_mixture *now,
                            double *length, double *scratch)
 {
-  unlimited_length(mesh, fluid, U, phi, classes, phi_bed_profile, length, scratch);
-  if (fluid->bed_mixing > 0.0)
-    among_grains(mesh, fluid, phi, classes, length, scratch, scratch + mesh->ncell);
+  unlimited_length(mesh, fluid, now, length, scratch);
+  if (fluid->bed_mixing > 0.0) among_grains(mesh, fluid, now, length, scratch);
   if (!fluid->narrow) return;
   const double most = 0.5 * fluid->kappa * fluid->width;
   for (int j = 0; j < mesh->ncell; j++) length[j] = fmin(length[j], most);

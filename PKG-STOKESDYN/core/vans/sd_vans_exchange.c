@@ -1,12 +1,7 @@
-#include "sd_constants.h"
+#include "sd_sphere.h"
 #include "sd_vans_yade.h"
 
 #include <math.h>
-
-static double sphere(double a)
-{
-  return 4.0 / 3.0 * SD_PI * a * a * a;
-}
 
 /* n<f> of slice n: force per volume of mixture. Without the sum over grains phi / V of a grain
  * times the mean drag on a grain, which is right for grains of one size. */
@@ -16,11 +11,11 @@ static double drag_density(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid,
   const long N = mesh->ncell;
   const double *profile = grains->profile;
   if (grains->density) return grains->density[n];
-  if (!grains->classes) return profile[n] / sphere(fluid->radius) * profile[SD_VANS_DRAG * N + n];
+  if (!grains->classes) return profile[n] / sd_sphere_volume(fluid->radius) * profile[SD_VANS_DRAG * N + n];
   double sum = 0.0;
   for (int c = 0; c < fluid->nclass; c++) {
     const double *of_class = grains->classes + c * SD_VANS_ROWS * N;
-    sum += of_class[n] / sphere(fluid->class_radius[c]) * of_class[SD_VANS_DRAG * N + n];
+    sum += of_class[n] / sd_sphere_volume(fluid->class_radius[c]) * of_class[SD_VANS_DRAG * N + n];
   }
   return sum;
 }
@@ -53,7 +48,7 @@ static double rate_of(const sd_vans_fluid *fluid, double a, double phi, double s
 {
   const double factor =
       sd_drag_factor(fluid->drag, fluid->rho, fluid->eta, a, hindrance, fabs(slip));
-  return phi / sphere(a) * factor / fluid->rho;
+  return phi / sd_sphere_volume(a) * factor / fluid->rho;
 }
 
 double sd_vans_drag_rate(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U,

@@ -28,26 +28,35 @@ double sd_vans_drive(const sd_vans_fluid *fluid)
  *   cl = e_j A_j e_(j-1)    cu = e_j A_(j+1) e_(j+1)    ce = e_j dz/dt    cd = ce + e_j^2 (A_j +
  *                           A_(j+1)) + dz b_j
  *   cr = e_j (A_(j+1) J_(j+1) - A_j J_j) + dz (b_j v_j + e_j drive + source_j) */
+/* Side walls, if any */
+typedef struct {
+  int on;
+  double Re_factor, least_speed;
+  /* e dz/width coef/8; of a step: friction, cd and cr with it */
+  double *scale, *K, *cd, *cr;
+  sd_vans_friction *friction;
+  /* friction over steps */
+  double sum;
+} side_walls;
+
+/* Over steps: U', the fluxes through the turbulent bottom and surface, and the drive */
+typedef struct {
+  double *U, bottom, surface, drive;
+} sums;
+
 struct sd_vans_solver {
   const sd_vans_mesh *mesh;
   /* constant in a solve */
   double *cl, *cu, *cd, *ce, *cr;
   double drive, cu_top, cr_top;
-  /* with the discharge held: dz e, what a unit of drive does to U' in a step; drive summed up */
+  /* with the discharge held: dz e, what a unit of drive does to U' in a step */
   double *content, *response;
-  double drive_sum;
   /* node: l^2/h, eN/h */
   double *mix, *gap;
   /* of a step */
   double *nut, *T, *c, *g;
-  /* side walls, if any: e dz/width coef/8, friction of the step, cd and cr with them */
-  int walls;
-  double Re_factor, least_speed;
-  double *wall_scale, *wall, *wall_cd, *wall_cr;
-  sd_vans_friction *friction;
-  /* over steps: U', and the fluxes through the turbulent bottom and surface and the walls */
-  double *sum;
-  double T_bottom, T_surface, wall_sum;
+  side_walls wall;
+  sums over;
   double *memory;
 };
 
@@ -65,11 +74,11 @@ sd_vans_solver *sd_vans_solver_create(const sd_vans_mesh *mesh)
   }
   s->mesh = mesh;
   s->memory = m;
-  s->friction = friction;
-  double **arrays[] = {&s->cl,      &s->cu,      &s->cd,   &s->ce,        &s->cr, &s->mix,
-                       &s->gap,     &s->nut,     &s->T,    &s->c,         &s->g,  &s->sum,
-                       &s->wall_cd, &s->wall_cr, &s->wall, &s->wall_scale,
-                       &s->content, &s->response};
+  s->wall.friction = friction;
+  double **arrays[] = {&s->cl,  &s->cu,     &s->cd,      &s->ce,      &s->cr,     &s->mix,
+                       &s->gap, &s->nut,    &s->T,       &s->c,       &s->g,      &s->over.U,
+                       &s->wall.cd,         &s->wall.cr, &s->wall.K,  &s->wall.scale,
+                       &s->content,         &s->response};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) *arrays[k] = m + k * n;
   return s;
 }
@@ -78,7 +87,7 @@ void sd_vans_solver_free(sd_vans_solver *solver)
 {
   if (!solver) return;
   free(solver->memory);
-  free(solver->friction);
+  free(solver->wall.friction);
   free(solver);
 }
 
@@ -170,17 +179,31 @@ static void solve_rows(sd_vans_solver *s, int M, const double *cd, const double 
 static void wall_rows(sd_vans_solver *s, sd_vans_rules rules, int M, const double *U)
 {
   const int yade = rules == SD_VANS_YADE;
-  const double *cd = s->cd, *cr = s->cr, *scale = s->wall_scale;
-  double *wall = s->wall, *wall_cd = s->wall_cd, *wall_cr = s->wall_cr;
+  const double *cd = s->cd, *cr = s->cr, *scale = s->wall.scale;
+  double *wall = s->wall.K, *wall_cd = s->wall.cd, *wall_cr = s->wall.cr;
   for (int j = 0; j < M; j++) {
     const double u = U[j + 1], size = fabs(u),
-                 speed = size > s->least_speed ? size : s->least_speed,
-                 f = sd_vans_wall_friction(rules, speed * s->Re_factor, &s->friction[j]);
+                 speed = size > s->wall.least_speed ? size : s->wall.least_speed,
+                 f = sd_vans_wall_friction(rules, speed * s->wall.Re_factor, &s->wall.friction[j]);
     const double K = scale[j] * f * (yade ? speed * speed : speed);
     wall[j] = K;
     wall_cd[j] = cd[j] + K;
     wall_cr[j] = cr[j] - (yade ? K : K * u);
   }
+}
+
+static void prepare_walls(sd_vans_solver *s, const sd_vans_fluid *fluid, double dt)
+{
+  const int M = s->mesh->ncell - 1;
+  side_walls *w = &s->wall;
+  const double factor = fluid->width > 0.0 ? dt / fluid->width * fluid->wall_coef / 8.0 : 0.0;
+  w->on = factor != 0.0;
+  w->Re_factor = sd_vans_wall_length(fluid) * fluid->rho / fluid->eta;
+  w->least_speed = w->on ? SD_VANS_LEAST_RE / w->Re_factor : 0.0;
+  const double roughness = w->on ? fluid->wall_roughness / sd_vans_wall_length(fluid) : 0.0;
+  for (int j = 0; j < M; j++) w->friction[j].roughness = roughness;
+  for (int j = 0; j < M; j++) w->scale[j] = s->ce[j] * factor;
+  w->sum = 0.0;
 }
 
 /* The rows as far as they stay in a solve: all but the eddy viscosity and the walls. The viscous
@@ -193,7 +216,7 @@ static void prepare(sd_vans_solver *s, const sd_vans_fluid *fluid, const sd_vans
   const double *phi = column->phi, *vx = column->vx, *b = column->b;
   const int N = mesh->ncell, M = N - 1;
   s->drive = fluid->held ? 0.0 : sd_vans_drive(fluid);
-  s->drive_sum = 0.0;
+  s->over.drive = 0.0;
   for (int j = 0; j < N; j++) {
     s->mix[j] = mixing_at_node(mesh, fluid, column->length, j);
     s->gap[j] = porosity_at_node(mesh, phi, j) / gap_of(mesh, j);
@@ -216,23 +239,15 @@ static void prepare(sd_vans_solver *s, const sd_vans_fluid *fluid, const sd_vans
     A = above;
   }
   s->cl[0] = 0.0; /* U = 0 on the bottom */
-  /* The surface is eliminated from the last row: its eddy viscosity T_M stays in the row only if
-   * the
+  /* The surface is eliminated from the last row: its eddy viscosity T_M stays in the row only if the
    * surface is driven. */
   s->cu_top = s->cu[M - 1];
   s->cr_top = s->cr[M - 1];
   s->cu[M - 1] = 0.0;
   if (!fluid->driven) s->cd[M - 1] -= s->cu_top;
-
-  const double factor = fluid->width > 0.0 ? dt / fluid->width * fluid->wall_coef / 8.0 : 0.0;
-  s->walls = factor != 0.0;
-  s->Re_factor = sd_vans_wall_length(fluid) * fluid->rho / fluid->eta;
-  s->least_speed = s->walls ? SD_VANS_LEAST_RE / s->Re_factor : 0.0;
-  const double roughness = s->walls ? fluid->wall_roughness / sd_vans_wall_length(fluid) : 0.0;
-  for (int j = 0; j < M; j++) s->friction[j].roughness = roughness;
-  for (int j = 0; j < M; j++) s->wall_scale[j] = s->ce[j] * factor;
-  memset(s->sum, 0, M * sizeof(double));
-  s->T_bottom = s->T_surface = s->wall_sum = 0.0;
+  prepare_walls(s, fluid, dt);
+  memset(s->over.U, 0, M * sizeof(double));
+  s->over.bottom = s->over.surface = 0.0;
 }
 
 /* The drive for which the discharge is what it should be, added to U'. */
@@ -263,22 +278,22 @@ static void step(sd_vans_solver *s, const sd_vans_fluid *fluid, double *U, int k
     s->cr[M - 1] = s->cr_top + (s->cu_top + T_top) * fluid->u_top;
   else
     s->T[M] = 0.0;
-  if (s->walls) wall_rows(s, fluid->rules, M, U);
-  for (int j = 0; s->walls && keep && j < M; j++)
-    s->wall_sum += s->wall[j] * (fluid->rules == SD_VANS_YADE ? 1.0 : U[j + 1]);
+  if (s->wall.on) wall_rows(s, fluid->rules, M, U);
+  for (int j = 0; s->wall.on && keep && j < M; j++)
+    s->wall.sum += s->wall.K[j] * (fluid->rules == SD_VANS_YADE ? 1.0 : U[j + 1]);
 
-  const double *cd = s->walls ? s->wall_cd : s->cd;
-  solve_rows(s, M, cd, s->walls ? s->wall_cr : s->cr, U);
+  const double *cd = s->wall.on ? s->wall.cd : s->cd;
+  solve_rows(s, M, cd, s->wall.on ? s->wall.cr : s->cr, U);
   if (fluid->held) hold_discharge(s, cd, fluid->discharge, U);
-  s->drive_sum += s->drive;
+  s->over.drive += s->drive;
   U[N] = fluid->driven ? fluid->u_top : U[M];
 
   if (!keep) return;
-  for (int j = 0; j < M; j++) s->sum[j] += U[j + 1];
-  s->T_bottom += T_low * U[1];
-  if (fluid->driven) s->T_surface += T_top * (fluid->u_top - U[M]);
-  if (s->walls)
-    for (int j = 0; j < M; j++) s->wall_sum += s->wall[j] * U[j + 1];
+  for (int j = 0; j < M; j++) s->over.U[j] += U[j + 1];
+  s->over.bottom += T_low * U[1];
+  if (fluid->driven) s->over.surface += T_top * (fluid->u_top - U[M]);
+  if (s->wall.on)
+    for (int j = 0; j < M; j++) s->wall.sum += s->wall.K[j] * U[j + 1];
 }
 
 /* Viscous flux through node j, summed over the steps: A_j (e_j x_j - e_(j-1) x_(j-1) + J_j), x the
@@ -286,7 +301,7 @@ static void step(sd_vans_solver *s, const sd_vans_fluid *fluid, double *U, int k
 static double viscous_flux(const sd_vans_solver *s, const sd_vans_fluid *fluid,
                            const sd_vans_column *column, double steps, int j)
 {
-  const double *phi = column->phi, *vx = column->vx, *U = s->sum;
+  const double *phi = column->phi, *vx = column->vx, *U = s->over.U;
   const int M = s->mesh->ncell - 1;
   /* no mixture moves on the bottom; the surface has the velocity of the highest slice or u_top */
   const double below = j == 0 ? 0.0 : (1.0 - phi[j - 1]) * U[j - 1];
@@ -309,19 +324,19 @@ static void close_books(const sd_vans_solver *s, const sd_vans_fluid *fluid,
   double flux = viscous_flux(s, fluid, column, steps, 0);
   books->driving = 0.0;
   books->drive = s->drive;
-  books->bottom = -rho_dt * (flux + s->T_bottom);
-  books->walls = -rho_dt * s->wall_sum;
+  books->bottom = -rho_dt * (flux + s->over.bottom);
+  books->walls = -rho_dt * s->wall.sum;
   for (int j = 0; j < M; j++) {
     const double above = viscous_flux(s, fluid, column, steps, j + 1),
                  dz = sd_vans_height(s->mesh, j);
     books->shear[j] = rho_dt * phi[j] * (above - flux);
     books->moved[j] =
-        rho_dt * dz * column->b[j] * (s->sum[j] - column->vx[j] * steps) + books->shear[j];
-    books->driving += rho_dt * dz * (1.0 - phi[j]) * s->drive_sum;
+        rho_dt * dz * column->b[j] * (s->over.U[j] - column->vx[j] * steps) + books->shear[j];
+    books->driving += rho_dt * dz * (1.0 - phi[j]) * s->over.drive;
     flux = above;
   }
   books->moved[M] = books->shear[M] = 0.0;
-  books->surface = rho_dt * (flux + s->T_surface);
+  books->surface = rho_dt * (flux + s->over.surface);
 }
 
 sd_status sd_vans_solve(sd_vans_solver *s, const sd_vans_fluid *fluid,

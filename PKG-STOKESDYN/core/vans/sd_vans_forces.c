@@ -1,3 +1,4 @@
+#include "sd_sphere.h"
 #include "sd_vans_internal.h"
 
 #include <math.h>
@@ -63,7 +64,7 @@ int sd_vans_forces(const sd_vans_ambient *stream, const sd_vans_grains *grains, 
               inside = p >= 0 && p < mesh->ncell;
     if (!inside) outside++;
     if (!inside && law->rules == SD_VANS_YADE) continue;
-    const double a = grains->a[i], displaced = 4.0 / 3.0 * SD_PI * a * a * a * law->rho,
+    const double a = grains->a[i], displaced = sd_sphere_volume(a) * law->rho,
                  share = grains->weight ? grains->weight[i] : 1.0;
     drag_on(stream, grains, i, p, Fi);
     if (grains->acceleration)

@@ -1,27 +1,30 @@
+#include "sd_sphere.h"
 #include "sd_vans_internal.h"
 #include "sd_vans_yade.h"
+
+#include <stddef.h>
 
 /* A sphere as sd_vans_next_part cuts it, or, with point, in one piece where its centre is. */
 static int next_piece(const sd_vans_mesh *mesh, int point, double z, double a, sd_vans_part *part)
 {
   if (!point) return sd_vans_next_part(mesh, a, part);
   if (!(part->top < a)) return 0;
-  *part = (sd_vans_part){sd_vans_slice_of(mesh, z), 4.0 / 3.0 * SD_PI * a * a * a, a, 0.0, 0.0};
+  *part = (sd_vans_part){sd_vans_slice_of(mesh, z), sd_sphere_volume(a), a, 0.0, 0.0};
   return 1;
 }
 
-int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, double z, double a,
-                   int *first, double *V, int max)
+sd_vans_reach sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, double z, double a,
+                             double *V)
 {
-  if (rules == SD_VANS_YADE && !point) return sd_vans_yade_slices(mesh, z, a, first, V, max);
-  int count = 0;
+  if (rules == SD_VANS_YADE && !point) return sd_vans_yade_slices(mesh, z, a, V);
+  sd_vans_reach reach = {0, 0, V};
   sd_vans_part part = sd_vans_lowest_part(mesh, z, a);
   while (next_piece(mesh, point, z, a, &part)) {
-    if (part.n < 0 || part.n >= mesh->ncell || count == max) continue;
-    if (count == 0) *first = part.n;
-    V[count++] = part.V;
+    if (part.n < 0 || part.n >= mesh->ncell) continue;
+    if (reach.count == 0) reach.first = part.n;
+    V[reach.count++] = part.V;
   }
-  return count;
+  return reach;
 }
 
 static inline void grains_add(double *sum, double V, const double *v, double drag)
@@ -33,19 +36,18 @@ static inline void grains_add(double *sum, double V, const double *v, double dra
   sum[SD_VANS_DRAG] += V * drag;
 }
 
-/* Adds one grain in its slices first to first + count - 1, in each with its volume there, the same
- * velocity and the drag of that slice. V, drag [count] */
-static void add_slices(double *sums, int first, int count, const double *V, const double *v,
-                       const double *drag)
+/* Adds one grain in each of its slices with its volume there, the same velocity and the drag of that slice.
+ * drag [count] */
+static void add_slices(double *sums, const sd_vans_reach *reach, const double *v, const double *drag)
 {
-  double *sum = sums + (long) first * SD_VANS_ROWS;
-  for (int k = 0; k < count; k++) grains_add(sum + k * SD_VANS_ROWS, V[k], v, drag[k]);
+  double *sum = sums + (long) reach->first * SD_VANS_ROWS;
+  for (int k = 0; k < reach->count; k++) grains_add(sum + k * SD_VANS_ROWS, reach->V[k], v, drag[k]);
 }
 
 /* Drag on grain i along x (and z), were all of it in the slice: in each that it reaches, or, if it
  * feels the water at its centre, of that slice p in all of them. */
 static void drag_of_slices(const sd_vans_ambient *stream, const sd_vans_grains *grains, int i,
-                           const int slices[2], double *along_x, double *along_z)
+                           const sd_vans_reach *reach, double *along_x, double *along_z)
 {
   const sd_vans_mesh *mesh = stream->mesh;
   const sd_vans_force_law *law = stream->law;
@@ -54,7 +56,7 @@ static void drag_of_slices(const sd_vans_ambient *stream, const sd_vans_grains *
   double F[3] = {0.0, 0.0, 0.0};
   if (!law->felt_by_volume && inside)
     sd_vans_add_drag(law, grains, i, sd_vans_water_in(stream, p), 1.0, F);
-  for (int k = 0, n = slices[0]; k < slices[1]; k++, n++) {
+  for (int k = 0, n = reach->first; k < reach->count; k++, n++) {
     if (law->felt_by_volume) {
       F[0] = F[1] = F[2] = 0.0;
       sd_vans_add_drag(law, grains, i, sd_vans_water_in(stream, n), 1.0, F);
@@ -66,13 +68,13 @@ static void drag_of_slices(const sd_vans_ambient *stream, const sd_vans_grains *
 
 /* Force per volume of mixture: each slice has the part of the grain's drag that it has of its
  * volume. */
-static void add_density(double *density, int N, double a, int first, int count, const double *V,
-                        const double *along_x, const double *along_z)
+static void add_density(double *density, int N, double a, const sd_vans_reach *reach, const double *along_x,
+                        const double *along_z)
 {
-  const double whole = 4.0 / 3.0 * SD_PI * a * a * a;
-  for (int k = 0; k < count; k++) {
-    density[first + k] += V[k] / whole * along_x[k];
-    density[N + first + k] += V[k] / whole * along_z[k];
+  const double whole = sd_sphere_volume(a);
+  for (int k = 0; k < reach->count; k++) {
+    density[reach->first + k] += reach->V[k] / whole * along_x[k];
+    density[N + reach->first + k] += reach->V[k] / whole * along_z[k];
   }
 }
 
@@ -86,15 +88,13 @@ int sd_vans_average(const sd_vans_ambient *stream, const sd_vans_averaging *how,
   for (int i = 0; i < grains->n; i++) {
     if (grains->take && !grains->take[i]) continue;
     const double z = grains->x[3 * (long) i + 2], *v = grains->v + 3 * (long) i, a = grains->a[i];
-    int slices[2] = {0, 0}; /* the first, how many */
-    slices[1] = sd_vans_slices(mesh, law->rules, how->point, z, a, &slices[0], V, N);
-    const int first = slices[0], count = slices[1];
+    const sd_vans_reach reach = sd_vans_slices(mesh, law->rules, how->point, z, a, V);
     /* a share of the sphere is that share of each of its slices */
     if (grains->weight)
-      for (int k = 0; k < count; k++) V[k] *= grains->weight[i];
-    drag_of_slices(stream, grains, i, slices, drag, upward);
-    add_slices(sums, first, count, V, v, drag);
-    if (how->density) add_density(how->density, N, a, first, count, V, drag, upward);
+      for (int k = 0; k < reach.count; k++) V[k] *= grains->weight[i];
+    drag_of_slices(stream, grains, i, &reach, drag, upward);
+    add_slices(sums, &reach, v, drag);
+    if (how->density) add_density(how->density, N, a, &reach, drag, upward);
     if (how->nclass == 0) continue;
 
     const int c = sd_vans_class_of(how, a);
@@ -102,10 +102,9 @@ int sd_vans_average(const sd_vans_ambient *stream, const sd_vans_averaging *how,
     double *class_sums = sums + (long) (1 + c) * N * SD_VANS_ROWS;
     const int p = sd_vans_slice_of(mesh, z), inside = p >= 0 && p < N;
     if (law->rules == SD_VANS_YADE)
-      sd_vans_yade_add_slices(class_sums, first, count, V, v, drag,
-                              inside ? class_sums + (long) p * SD_VANS_ROWS : 0);
+      sd_vans_yade_add_slices(class_sums, &reach, v, drag, inside ? class_sums + (long) p * SD_VANS_ROWS : NULL);
     else
-      add_slices(class_sums, first, count, V, v, drag);
+      add_slices(class_sums, &reach, v, drag);
   }
   return -1;
 }
@@ -130,7 +129,7 @@ void sd_vans_spread(const sd_vans_mesh *mesh, int point, const sd_vans_grains *g
   for (int i = 0; i < grains->n; i++) {
     if (grains->take && !grains->take[i]) continue;
     const double z = grains->x[3 * (long) i + 2], a = grains->a[i],
-                 whole = 4.0 / 3.0 * SD_PI * a * a * a;
+                 whole = sd_sphere_volume(a);
     sd_vans_part part = sd_vans_lowest_part(mesh, z, a);
     double rest = value[i];
     while (next_piece(mesh, point, z, a, &part)) {

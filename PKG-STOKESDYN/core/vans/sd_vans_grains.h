@@ -49,17 +49,22 @@ typedef struct {
   const double *acceleration;
 } sd_vans_grains;
 
+/* The slices that a sphere reaches, from the first one on, >= 0, none with count 0; V[k] is its volume in
+ * slice first + k */
+typedef struct {
+  int first, count;
+  double *V;
+} sd_vans_reach;
+
 /* Volume of a sphere in each slice that it reaches: differences of one primitive, so that the parts
  * of any cut sum to 4/3 pi a^3 up to rounding.
  *   point   1: all of it is where its centre is
  *   z       height of its centre (not above z_ref: as LAMMPS has it)
- *   first   out, lowest slice that it reaches, >= 0
- *   V       out, V[k] is the volume in slice first + k
- * Returns how many; 0 if it reaches none; never more than max (a caller gives N). What lies outside
- * the mesh is not in V. Yade's rule mirrors the slices at that of the centre and cuts each only on
- * its far side: for a/dz < 5 the volume is not conserved. */
-int sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, double z, double a,
-                   int *first, double *V, int max);
+ *   V       [N] room for that of what is returned
+ * What lies outside the mesh is not in V. Yade's rule mirrors the slices at that of the centre and
+ * cuts each only on its far side: for a/dz < 5 the volume is not conserved. */
+sd_vans_reach sd_vans_slices(const sd_vans_mesh *mesh, sd_vans_rules rules, int point, double z,
+                             double a, double *V);
 
 typedef struct {
   /* density and dynamic viscosity of the fluid, > 0 */

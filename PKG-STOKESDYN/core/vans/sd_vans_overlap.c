@@ -1,5 +1,6 @@
 #include "sd_constants.h"
 #include "sd_linear.h"
+#include "sd_sphere.h"
 #include "sd_vans_grains.h"
 
 #include <math.h>
@@ -152,7 +153,7 @@ static int caps_are_apart(double a, int count, const cut *cuts)
 
 double sd_vans_union_share(int n, const double *x, const double *a, int i)
 {
-  const double ai = a[i], all = 4.0 / 3.0 * SD_PI * ai * ai * ai;
+  const double ai = a[i], all = sd_sphere_volume(ai);
   cut *cuts = malloc((size_t) n * (sizeof(cut) + 7 * sizeof(double)));
   if (!cuts) return -1.0;
   const int count = cuts_of(n, x, a, i, cuts);

@@ -11,6 +11,14 @@ void sd_vans_normal3(uint64_t seed, uint64_t id, uint64_t count, double out[3])
   sd_random_normals(&key, id, 3, out);
 }
 
+void sd_vans_friction_velocities(const sd_vans_fluid *fluid, int n, const double *stress, double *u_star)
+{
+  for (int k = 0; k < n; k++) {
+    const double size = fluid->rules == SD_VANS_YADE ? fmax(stress[k], 0.0) : fabs(stress[k]);
+    u_star[k] = copysign(sqrt(size / fluid->rho), stress[k]);
+  }
+}
+
 void sd_vans_fluctuation(const double normal[3], double u_star, int correlated, double u[3])
 {
   /* -a in u'x with a in u'z: fast water comes from above, <u'x u'z> = -u_star^2 */

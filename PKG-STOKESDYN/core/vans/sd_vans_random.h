@@ -12,6 +12,10 @@ SD_BEGIN_C
  * any number of ranks (sd_random.h, of which the seed has the lower 32 bits). */
 void sd_vans_normal3(uint64_t seed, uint64_t id, uint64_t count, double out[3]);
 
+/* u_star [n] of each slice, sqrt(|stress|/rho) with the sign of the stress. Yade's rule: 0 where that is
+ * negative. */
+void sd_vans_friction_velocities(const sd_vans_fluid *fluid, int n, const double *stress, double *u_star);
+
 /* u' of one grain from a, b, c ~ N(0,1) and the friction velocity u_star = sqrt(stress/rho):
  * correlated: (-a + c, b, a) u_star, with <u'x u'z> = -u_star^2; uncorrelated: (c, b, a) u_star.
  * Where the stress is negative, as in a stream along -x, u_star is -sqrt(-stress/rho): u'x then

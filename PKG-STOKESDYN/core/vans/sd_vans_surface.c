@@ -1,5 +1,7 @@
 #include "sd_vans.h"
 
+#include <math.h>
+
 /* Of the water: the highest slice is above it. */
 double sd_vans_momentum(const sd_vans_mesh *mesh, double rho, const double *phi, const double *U)
 {
@@ -75,6 +77,12 @@ int sd_vans_fill(const sd_vans_mesh *mesh, const double *phi, double volume, dou
   edge[top + 1] = edge[top] + (phi ? rest / (1.0 - phi[top]) : rest);
   edge[top + 2] = edge[top + 1] + sd_vans_height(mesh, top);
   return top + 2;
+}
+
+double sd_vans_inflow(double volume, double comes, double passes, double reach, double T)
+{
+  const double speed = fmax(passes / volume, 0.0);
+  return volume + T * (comes - passes) / (reach + T * speed);
 }
 
 void sd_vans_rise(const sd_vans_mesh *mesh, const double *profile, double flux, int first,

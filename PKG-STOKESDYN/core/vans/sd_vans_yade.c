@@ -6,31 +6,30 @@
 
 enum { ORDER = SD_VANS_FRICTION_TERMS };
 
-int sd_vans_yade_slices(const sd_vans_mesh *mesh, double z, double a, int *first, double *V,
-                        int max)
+sd_vans_reach sd_vans_yade_slices(const sd_vans_mesh *mesh, double z, double a, double *V)
 {
   const double height = z - mesh->z_ref, dz = mesh->dz;
   const double centre = floor(height / dz), offset = height - centre * dz;
   const double lowest = fmax(floor((height - a) / dz), 0.0),
                highest = fmin(floor((height + a) / dz), mesh->ncell - 1.0);
-  if (!(lowest <= highest)) return 0;
-  *first = (int) lowest;
+  if (!(lowest <= highest)) return (sd_vans_reach){0, 0, V};
   const int count = (int) (highest - lowest) + 1;
-  for (int k = 0; k < count && k < max; k++) {
+  for (int k = 0; k < count; k++) {
     const double above = lowest + k - centre;
     double s0 = (above - 1.0) * dz + offset, s1 = above * dz + offset;
     if (s0 < -a) s0 = -a;
     if (s1 > a) s1 = a;
     V[k] = SD_PI * (a * a * (s1 - s0) - (s1 * s1 * s1 - s0 * s0 * s0) / 3.0);
   }
-  return count < max ? count : max;
+  return (sd_vans_reach){(int) lowest, count, V};
 }
 
-void sd_vans_yade_add_slices(double *sums, int first, int count, const double *V,
-                             const double *v, const double *drag, double *centre)
+void sd_vans_yade_add_slices(double *sums, const sd_vans_reach *reach, const double *v, const double *drag,
+                             double *centre)
 {
-  for (int k = 0; k < count; k++) {
-    double *here = sums + (long) (first + k) * SD_VANS_ROWS;
+  const double *V = reach->V;
+  for (int k = 0; k < reach->count; k++) {
+    double *here = sums + (long) (reach->first + k) * SD_VANS_ROWS;
     here[SD_VANS_PHI] += V[k];
     here[SD_VANS_DRAG] += V[k] * drag[k];
     if (!centre) continue;

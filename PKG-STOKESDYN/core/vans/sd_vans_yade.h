@@ -7,13 +7,12 @@
 
 /* As sd_vans_slices. Slice n has the limits of slice 2p-n, p that of the centre, and the sphere's
  * lower end is cut only off the lower limit, its upper end only off the upper one. */
-int sd_vans_yade_slices(const sd_vans_mesh *mesh, double z, double a, int *first, double *V,
-                        int max);
+sd_vans_reach sd_vans_yade_slices(const sd_vans_mesh *mesh, double z, double a, double *V);
 
 /* Adds a grain to the sums of its class: volume and drag where they are, velocities all in the
- * slice of the centre (NULL: outside the mesh). V, drag [count] */
-void sd_vans_yade_add_slices(double *sums, int first, int count, const double *V,
-                             const double *v, const double *drag, double *centre);
+ * slice of the centre (NULL: outside the mesh). drag [count] */
+void sd_vans_yade_add_slices(double *sums, const sd_vans_reach *reach, const double *v, const double *drag,
+                             double *centre);
 
 /* As sd_vans_steps: dt is added up until the sum, rounded after every step, reaches T. */
 int64_t sd_vans_yade_steps(double T, double dt);

@@ -41,9 +41,16 @@ static inline void column_free(column *c)
   free(c);
 }
 
+/* Mixing lengths; classes NULL: of one class of grains */
+static inline void find_lengths(column *c, const sd_vans_fluid *fluid, const double *classes)
+{
+  const sd_vans_mixture now = {c->U, c->phi, classes, c->phi};
+  sd_vans_mixing_length(&c->mesh, fluid, &now, c->length, c->scratch);
+}
+
 static inline void solve(column *c, const sd_vans_fluid *fluid, int64_t steps, double dt)
 {
-  sd_vans_mixing_length(&c->mesh, fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch);
+  find_lengths(c, fluid, NULL);
   const sd_vans_column column = {c->phi, c->vx, c->b, c->length, NULL};
   const sd_vans_flow flow = {c->U, c->nut, c->stress};
   assert_int_equal(sd_vans_solve(c->solver, fluid, &column, steps, dt, &flow, NULL), SD_OK);

@@ -14,7 +14,7 @@ static void mixing_lengths(void **state)
   const double dz = 0.01, H = 0.5;
 #define LENGTH(which)       \
   fluid.turbulence = which; \
-  sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch)
+  find_lengths(c, &fluid, NULL)
   LENGTH(SD_VANS_KZ);
   for (int j = 0; j < N; j++) assert_true(fabs(c->length[j] - 0.4 * j * dz) < 1e-15);
   LENGTH(SD_VANS_PARABOLIC);
@@ -66,9 +66,10 @@ static void lengths_among_grains(void **state)
                          .turbulence = SD_VANS_LI_SAWAMOTO};
   double plain[N], classes[2 * SD_VANS_ROWS * N] = {0};
   for (int n = 0; n < 20; n++) c->phi[n] = n < 15 ? 0.61 : 0.59;
-  sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, plain, c->scratch);
+  find_lengths(c, &fluid, NULL);
+  memcpy(plain, c->length, sizeof plain);
   fluid.bed_mixing = 0.7;
-  sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch);
+  find_lengths(c, &fluid, NULL);
   for (int j = 0; j < N; j++)
     assert_true(fabs(c->length[j] - (j > 0 && j <= 20 ? fmax(plain[j], 0.7 * 0.006) : plain[j])) < 1e-17);
   assert_true(plain[10] == 0.0 && c->length[10] > 0.0 && plain[20] < 0.7 * 0.006);
@@ -77,15 +78,15 @@ static void lengths_among_grains(void **state)
       (27 + 216.0);
   fluid.nclass = 2;
   fluid.class_radius = a;
-  sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, classes, c->phi, c->length, c->scratch);
+  find_lengths(c, &fluid, classes);
   assert_true(fabs(c->length[10] / (0.7 * 2 * (27 + 216) / (9 + 36.0) * 0.001) - 1) < 1e-14);
   fluid.rules = SD_VANS_YADE;
-  sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, classes, c->phi, c->length, c->scratch);
+  find_lengths(c, &fluid, classes);
   assert_true(fabs(c->length[10] / (0.7 * 2 * (27 * 27 + 216 * 216) / (27 * 9 + 216 * 36.0) * 0.001) - 1) < 1e-14);
   fluid.rules = SD_VANS_CONSISTENT;
   fluid.narrow = 1;
   fluid.width = 0.01;
-  sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch);
+  find_lengths(c, &fluid, NULL);
   assert_true(c->length[10] == 0.5 * 0.4 * 0.01);
   column_free(c);
 }
@@ -161,6 +162,33 @@ static void eddies_follow_their_slice(void **state)
   }
 }
 
+static void friction_velocities_have_the_sign_of_the_stress(void **state)
+{
+  (void) state;
+  sd_vans_fluid fluid = {.rho = 900};
+  const double stress[3] = {0.36, -2.25, 0.0};
+  double u_star[3];
+  sd_vans_friction_velocities(&fluid, 3, stress, u_star);
+  assert_true(fabs(u_star[0] - 0.02) < 1e-16 && fabs(u_star[1] + 0.05) < 1e-16 && u_star[2] == 0.0);
+  fluid.rules = SD_VANS_YADE;
+  sd_vans_friction_velocities(&fluid, 3, stress, u_star);
+  assert_true(fabs(u_star[0] - 0.02) < 1e-16 && u_star[1] == 0.0);
+}
+
+/* The step is implicit: reach (V' - V) = T (comes - U V') with the speed U = passes/V, at most comes/U after any time.
+ * Water that leaves at the end where it should come in makes no step shorter. */
+static void a_reach_fills_until_what_comes_passes(void **state)
+{
+  (void) state;
+  const double V = 0.3, comes = 0.12, passes = 0.06, reach = 7.0, speed = passes / V;
+  for (double T = 0.1; T < 1e5; T *= 10.0) {
+    const double after = sd_vans_inflow(V, comes, passes, reach, T);
+    assert_true(fabs(reach * (after - V) / (T * (comes - speed * after)) - 1.0) < 1e-9);
+    assert_true(after > V && after < comes / speed);
+  }
+  assert_true(fabs(sd_vans_inflow(V, comes, -0.03, reach, 2.0) - (V + 2.0 * 0.15 / reach)) < 1e-16);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -169,6 +197,8 @@ int main(void)
       cmocka_unit_test(effective_viscosities),
       cmocka_unit_test(profiles_tell_bed_transport_and_times),
       cmocka_unit_test(eddies_follow_their_slice),
+      cmocka_unit_test(friction_velocities_have_the_sign_of_the_stress),
+      cmocka_unit_test(a_reach_fills_until_what_comes_passes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -152,7 +152,7 @@ static void momentum_is_balanced(void **state)
         c->U[n + 1] = 0.5 * sqrt((n + 1.0) / N);
         source[n] = 0.05 * sin(n);
       }
-      sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch);
+      find_lengths(c, &fluid, NULL);
       const double before = sd_vans_momentum(&c->mesh, fluid.rho, c->phi, c->U), dt = 3e-4;
       const int steps = 37;
       const sd_vans_column column = {c->phi, c->vx, c->b, c->length, source};
@@ -209,7 +209,7 @@ static void discharge_is_held_step_by_step(void **state)
     c->phi[n] = 0.55 / (1.0 + exp(0.7 * (n - 20)));
     c->b[n] = 30 * c->phi[n];
   }
-  sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch);
+  find_lengths(c, &fluid, NULL);
   const sd_vans_column column = {c->phi, c->vx, c->b, c->length, NULL};
   const sd_vans_flow flow = {c->U, c->nut, c->stress};
   sd_vans_books in = {c->moved, c->shear, 0, 0, 0, 0, 0};

@@ -22,10 +22,9 @@ static void slices_sum_to_the_sphere(void **state)
     for (int k = 0; k <= 40; k++) {
       const double a = ratios[r] * dz,
                    z = z_ref + (1040 + k / 20.0) * dz; /* also on the borders and in the middles */
-      int first;
-      const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, z, a, &first, V, N);
+      const sd_vans_reach reach = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, z, a, V);
       double sum = 0.0;
-      for (int i = 0; i < count; i++) {
+      for (int i = 0; i < reach.count; i++) {
         assert_true(V[i] >= 0.0);
         sum += V[i];
       }
@@ -43,12 +42,11 @@ static void slices_of_uneven_mesh_sum_to_the_sphere(void **state)
   const sd_vans_mesh mesh = {N, 0.02, 0.0, edge};
   for (int k = 0; k < 200; k++) {
     const double a = 0.0031, z = 0.02 + a + k * 0.0006;
-    int first;
-    const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, z, a, &first, V, N);
+    const sd_vans_reach reach = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, z, a, V);
     double sum = 0.0;
-    for (int i = 0; i < count; i++) sum += V[i];
+    for (int i = 0; i < reach.count; i++) sum += V[i];
     assert_true(fabs(sum - 4.0 / 3.0 * SD_PI * a * a * a) <= 1e-13 * 4.2 * a * a * a);
-    assert_int_equal(sd_vans_slice_of(&mesh, 0.02 + 0.5 * (edge[first] + edge[first + 1])), first);
+    assert_int_equal(sd_vans_slice_of(&mesh, 0.02 + 0.5 * (edge[reach.first] + edge[reach.first + 1])), reach.first);
   }
 }
 
@@ -61,15 +59,14 @@ static void slices_end_at_the_mesh(void **state)
   for (int n = 0; n <= N; n++) edge[n] = n * 0.3;
   const sd_vans_mesh mesh = {N, 5.0, 0.3, edge};
   const double a = 0.7, ends[2] = {5.0, 5.0 + edge[N]};
-  int first;
   for (int k = 0; k < 2; k++) {
-    const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, ends[k], a, &first, V, N);
+    const sd_vans_reach reach = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, ends[k], a, V);
     double sum = 0.0;
-    for (int i = 0; i < count; i++) sum += V[i];
+    for (int i = 0; i < reach.count; i++) sum += V[i];
     assert_true(fabs(sum - 2.0 / 3.0 * SD_PI * a * a * a) <= 1e-13);
   }
-  assert_int_equal(sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, 4.2, a, &first, V, N), 0);
-  assert_int_equal(sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, 8.8, a, &first, V, N), 0);
+  assert_int_equal(sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, 4.2, a, V).count, 0);
+  assert_int_equal(sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, 8.8, a, V).count, 0);
 }
 
 /* Yade's slice n holds what belongs to slice 2p - n: seen where the sphere is large enough for its other defect, the
@@ -82,12 +79,11 @@ static void yade_mirrors_the_slices(void **state)
   for (int n = 0; n <= N; n++) edge[n] = n * 0.25;
   const sd_vans_mesh mesh = {N, 0.0, 0.25, edge};
   const double z = 20.3 * 0.25, a = 12.3 * 0.25; /* centre in slice 20; whole slices 9..31 */
-  int first_right, first_mirrored;
-  const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, z, a, &first_right, right, N);
-  sd_vans_slices(&mesh, SD_VANS_YADE, 0, z, a, &first_mirrored, mirrored, N);
+  const sd_vans_reach truly = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, z, a, right),
+                      of_yade = sd_vans_slices(&mesh, SD_VANS_YADE, 0, z, a, mirrored);
   for (int n = 10; n <= 30; n++)
-    assert_true(fabs(mirrored[n - first_mirrored] - right[2 * 20 - n - first_right]) < 1e-13);
-  assert_true(count > 20);
+    assert_true(fabs(mirrored[n - of_yade.first] - right[2 * 20 - n - truly.first]) < 1e-13);
+  assert_true(truly.count > 20);
 }
 
 static void point_grains_stay_in_one_slice(void **state)
@@ -243,8 +239,7 @@ static void a_slice_gives_what_its_grain_gets(void **state)
                  whole = 4.0 / 3.0 * SD_PI * a * a * a;
     const sd_vans_grains grain = {1, x, v, &a, NULL, NULL, NULL, NULL};
     const sd_vans_averaging how = {0, 0, NULL, NULL, NULL};
-    int first;
-    const int count = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, x[2], a, &first, V, N);
+    const sd_vans_reach reach = sd_vans_slices(&mesh, SD_VANS_CONSISTENT, 0, x[2], a, V);
     for (int moves = 0; moves < N; moves++) {
       double U[N + 1], F[3], drag, sums[N * SD_VANS_ROWS] = {0}, whole_drag[3];
       for (int n = 0; n <= N; n++) U[n] = v[0];
@@ -253,8 +248,8 @@ static void a_slice_gives_what_its_grain_gets(void **state)
       sd_vans_forces(&stream, &grain, F, &drag);
       sd_vans_average(&stream, &how, &grain, sums, scratch);
       yade_drag(law.rho, law.eta, a, hindrance[moves], (double[3]){0.2, 0, 0}, whole_drag);
-      const int reached = moves >= first && moves < first + count;
-      const double expected = reached ? V[moves - first] / whole * whole_drag[0] : 0.0;
+      const int reached = moves >= reach.first && moves < reach.first + reach.count;
+      const double expected = reached ? V[moves - reach.first] / whole * whole_drag[0] : 0.0;
       assert_true(fabs(drag - expected) < 1e-15 * whole_drag[0]);
       for (int n = 0; n < N; n++)
         assert_true(fabs(sums[n * SD_VANS_ROWS + SD_VANS_DRAG] / whole - (n == moves ? drag : 0.0)) <

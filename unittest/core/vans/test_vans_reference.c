@@ -189,7 +189,8 @@ static void check_fluid(const char *name, sd_vans_rules rules)
   memcpy(profile + SD_VANS_VX * N, vx, N * sizeof(double));
   memcpy(profile + SD_VANS_DRAG * N, vans_column(t, "drag"), N * sizeof(double));
   sd_vans_exchange(&mesh, &fluid, dt, U, &(sd_vans_means){profile, NULL, NULL}, b, cut);
-  sd_vans_mixing_length(&mesh, &fluid, U, phi, fluid.nclass ? classes : NULL, phi, length, scratch);
+  const sd_vans_mixture now = {U, phi, fluid.nclass ? classes : NULL, phi};
+  sd_vans_mixing_length(&mesh, &fluid, &now, length, scratch);
   sd_vans_solver *solver = sd_vans_solver_create(&mesh);
   const sd_vans_column column = {phi, vx, b, length, NULL};
   const sd_vans_flow flow = {U, nut, stress};

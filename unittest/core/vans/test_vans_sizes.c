@@ -117,7 +117,7 @@ static void pores_of_bins_are_those_of_the_grains(void **state)
     sd_vans_class_means(bins, fine, sums, radius, volume);
     const sd_vans_fluid fluid = {.rho = 1000, .eta = 1e-3, .kappa = 0.4, .phi_max = 0.6, .turbulence = SD_VANS_ROUSSEAU,
                                  .nclass = bins, .class_radius = radius, .class_volume = volume};
-    sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch);
+    find_lengths(c, &fluid, NULL);
     /* at rest van Driest's part is 0 */
     CHECK_NEAR(c->length[9], 0.5 * 0.4 / 0.6 * V / S, 1e-14 * V / S);
   }

@@ -195,7 +195,7 @@ static void narrow_walls_limit_the_mixing_length(void **state)
   (void) state;
   column *c = column_create(101, 0.2, 0.0);
   sd_vans_fluid fluid = {.turbulence = SD_VANS_KZ, .kappa = 0.4, .width = 0.03, .narrow = 1};
-  sd_vans_mixing_length(&c->mesh, &fluid, c->U, c->phi, NULL, c->phi, c->length, c->scratch);
+  find_lengths(c, &fluid, NULL);
   for (int j = 0; j <= 100; j++)
     assert_true(fabs(c->length[j] - 0.4 * fmin(c->edge[j], 0.015)) < 1e-15);
   column_free(c);

@@ -8,6 +8,7 @@
 #include "sd_ewald_rule_internal.h"
 #include "sd_field_internal.h"
 #include "sd_room.h"
+#include "sd_sphere.h"
 
 void sd_field_free(sd_field *f)
 {
@@ -81,7 +82,7 @@ static void box_around(sd_ewald_box *box, const sd_field_cloud *c, const sd_fiel
 static double cost_of_split(const sd_ewald *e, double sources, double points)
 {
   const double near_pair = 2.5, window_point = 1.5, grid_point = 40.0 * 8.0 * 7.0 / 12.0;
-  const double ball = 4.0 / 3.0 * SD_PI * e->range * e->range * e->range;
+  const double ball = sd_sphere_volume(e->range);
   const double share = fmin(1.0, ball / sd_ewald_volume(&e->box));
   return near_pair * share * sources * points + window_point * sources * pow(e->points, 3) +
       grid_point * e->grid[0] * e->grid[1] * (double) e->grid[2];

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "sd_constants.h"
+#include "sd_sphere.h"
 
 /* Near pairs have a polynomial to evaluate beside the tensor; a sphere spreads three forces to
  * points^3 of the grid and gathers three velocities from them; a grid point goes through three
@@ -11,7 +12,7 @@ static const double NEAR_PAIR = 5.8, WINDOW_POINT = 3.0, GRID_POINT = 40.0;
 
 double sd_ewald_near_pairs(const sd_ewald *e, double targets, double sources, double range)
 {
-  const double ball = 4.0 / 3.0 * SD_PI * range * range * range;
+  const double ball = sd_sphere_volume(range);
   const double share = ball / sd_ewald_volume(&e->box); /* more than 1: images */
   return targets * sources * (e->box.periodic ? share : fmin(1.0, share));
 }
