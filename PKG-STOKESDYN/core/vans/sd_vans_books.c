@@ -5,11 +5,11 @@
  * is on its way stays below ten couplings' worth. */
 static const double RETURNED = 0.1;
 
-/* What is in slices that the mesh of the water has not got goes to its last one. */
-static void fold_above(int N, int all, double *momentum)
+/* What is in slices above the water, which are M, goes to the highest one of these. */
+static void fold_above(int M, int all, double *momentum)
 {
-  for (int n = N; n < all; n++) {
-    momentum[N - 1] += momentum[n];
+  for (int n = M; n < all; n++) {
+    momentum[M - 1] += momentum[n];
     momentum[n] = 0.0;
   }
 }
@@ -17,13 +17,12 @@ static void fold_above(int N, int all, double *momentum)
 double sd_vans_give_back(const sd_vans_mesh *mesh, int all, double rho_area, double T, double *back,
                          double *outstanding, double *source)
 {
-  const int N = mesh->ncell, M = N - 1;
+  const int M = mesh->ncell - 1;    // the slice above the surface has no water
   double returned = 0.0;
-  fold_above(N, all, back);
-  fold_above(N, all, outstanding);
-  /* the slice above the surface has no water */
-  for (int n = 0; n < N; n++) outstanding[n < M ? n : M - 1] += back[n];
+  fold_above(M, all, back);
+  fold_above(M, all, outstanding);
   for (int n = 0; n < M; n++) {
+    outstanding[n] += back[n];
     const double share = RETURNED * outstanding[n];
     outstanding[n] -= share;
     returned += share;

@@ -104,7 +104,7 @@ static void momentum_goes_back_in_tenths(void **state)
   enum { N = 5, ALL = 7 };
   const double edge[N + 1] = {0, 0.1, 0.3, 0.6, 1.0, 1.5};
   const sd_vans_mesh mesh = {N, 0, 0, edge};
-  double back[ALL] = {1, -2, 3, 4, 2, 1, 2}, outstanding[ALL] = {0.5}, source[N], sum = 0.0;
+  double back[ALL] = {1, -2, 3, 4, 2, 1, 2}, outstanding[ALL] = {0.5, 0, 0, -1, 0.5, -0.5, 1}, source[N], sum = 0.0;
   const double returned = sd_vans_give_back(&mesh, ALL, 1030 * 0.7, 0.25, back, outstanding, source);
   for (int n = 0; n < N; n++) sum += source[n] * 1030 * 0.7 * (edge[n + 1] - edge[n]) * 0.25;
   assert_true(fabs(returned - 1.15) < 1e-14 && fabs(sum - returned) < 1e-14);
