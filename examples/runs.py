@@ -133,6 +133,11 @@ def dumped(path):
         yield int(lines[0]), np.array([[float(w) for w in line.split()] for line in lines[8:8 + int(lines[2])]])
 
 
+def open_axes():
+    """Of pictures from here on: no frame above and on the right"""
+    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+
+
 def save(figure, path, dpi=80):
     figure.savefig(path, dpi=dpi, pil_kwargs={"optimize": True})
     plt.close(figure)

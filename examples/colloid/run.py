@@ -17,7 +17,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from equilibrium import hard_spheres  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
+from runs import np, plt, dumped, finished, need, open_axes, options, save, values  # noqa: E402
 
 PHIS, N, DT, STEPS = (0.1, 0.2, 0.3, 0.4), 108, 1e-8, 8
 # words of the pair style, and how many steps for one of multiblobs
@@ -64,7 +64,7 @@ def measured(sets, phi, model):
 
 
 def draw(found, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, panel = plt.subplots(figsize=(6.2, 4.2), layout="constrained")
     phi = np.linspace(0, 0.45, 100)
     panel.plot(phi, diffusion(phi), "k-", lw=1.2, label="published fit")

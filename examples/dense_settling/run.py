@@ -13,7 +13,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, finished, need, options, read_table, save, values  # noqa: E402
+from runs import np, plt, finished, need, open_axes, options, read_table, save, values  # noqa: E402
 
 
 KEYS = ("no", "sum", "yes", "12")
@@ -46,7 +46,7 @@ def lammps(out, name, model):
 
 
 def draw(numbers, speeds, target):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, axes = plt.subplots(figsize=(8, 4.5), layout="constrained")
     axes.axhline(1, color="k", lw=1)
     for key, style, label in (("no", "v--C3", "model without lubrication"),

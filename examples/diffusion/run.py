@@ -22,7 +22,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from rigid import rigid_velocities  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
+from runs import np, plt, dumped, finished, need, open_axes, options, save, values  # noqa: E402
 
 DT, EVERY, STEPS, COPIES = 0.08, 5, 2500, 300
 SPACING = 60.0
@@ -142,7 +142,7 @@ COLOURS = {"rod": "C0", "disc": "C3", "helix": "C2"}
 
 
 def draw(runs, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure = plt.figure(figsize=(11.5, 4.6), layout="constrained")
     grid = figure.add_gridspec(3, 3, width_ratios=[1, 3, 3])
     msd, entries = figure.add_subplot(grid[:, 1]), figure.add_subplot(grid[:, 2])

@@ -16,7 +16,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
+from runs import np, plt, dumped, finished, need, open_axes, options, save, values  # noqa: E402
 
 THREE = np.array([(-5.0, 0, 0), (0, 0, 0), (7.0, 0, 0)])
 # Exact Stokes flow at t = 200 (multipoles of orders 5 and 7 agree to 3e-6), x and z
@@ -81,7 +81,7 @@ def medians(points, path):
 
 
 def draw(paths, figure5, errors, target):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 5.5), layout="constrained", width_ratios=[1.8, 1])
     for (name, path), (style, wide) in zip(paths.items(), ((":", 1), ("--", 1.2), ("-", 1.5))):
         for k, colour in enumerate(("C0", "C1", "C2")):

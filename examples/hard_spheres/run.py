@@ -18,7 +18,7 @@ sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from equilibrium import compressibility, hard_spheres, measured_pressure, pressure  # noqa: E402
 from in_lammps import SHEARS, InLammps  # noqa: E402
-from runs import np, plt, need, options, read_table, save  # noqa: E402
+from runs import np, plt, need, open_axes, options, read_table, save  # noqa: E402
 
 PHIS, N, PROBES, EVERY = (0.05, 0.1, 0.2, 0.3, 0.45), 500, 6, 6
 MODELS = {
@@ -122,7 +122,7 @@ def standard_error(sample):
 
 
 def draw(found, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, panels = plt.subplots(1, 3, figsize=(11, 4), layout="constrained")
     phi = np.linspace(0, 0.47, 100)
     for panel, (what, name) in zip(panels, WHAT.items()):

@@ -15,7 +15,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, listening, need, options, save, values  # noqa: E402
+from runs import np, plt, listening, need, open_axes, options, save, values  # noqa: E402
 
 WIDTHS = {2.5: "C2", 4.0: "C0", 10.0: "C1"}
 APART = np.array([2.5, 3, 4, 6, 8, 12, 16])
@@ -91,7 +91,7 @@ def crowd(out, rng, pushes):
 
 
 def draw(apart, pairs, points, at, v, own, L, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.8), layout="constrained")
     r = np.linspace(2.3, 18, 100)
     for H in points:

@@ -14,7 +14,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from exact import sphere_at_wall, wall_drag  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, save  # noqa: E402
+from runs import np, plt, dumped, finished, need, open_axes, options, save  # noqa: E402
 
 FILM = "lubrication yes lubrication_gap 1e-6"
 # colour, legend, keywords
@@ -55,7 +55,7 @@ def passes(run, heights):
 
 
 def draw(runs, exact, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6), layout="constrained")
     left.semilogy(*exact, "k-", lw=1, label="exact (Brenner 1961)")
     right.loglog(exact[1], [1 / wall_drag(gap) for gap in exact[1]], "k-", lw=1, label="exact")

@@ -17,7 +17,7 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, listening, need, options, save, values  # noqa: E402
+from runs import np, plt, listening, need, open_axes, options, save, values  # noqa: E402
 
 A, KT, WEIGHT, FRACTION, LENGTH, DEEPEST = 1.0155, 0.004075, 0.0303, 0.4, 0.0406, -0.0406
 DT, PIECE = 0.01, 25                # speeds are those over a piece of so many steps
@@ -127,7 +127,7 @@ def boltzmann():
 
 
 def draw(frames, L, v, z, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure = plt.figure(figsize=(11, 5.8), layout="constrained")
     grid = figure.add_gridspec(2, 12)
     for k in range(4):

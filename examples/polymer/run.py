@@ -21,7 +21,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, finished, need, options, save, values  # noqa: E402
+from runs import np, plt, finished, need, open_axes, options, save, values  # noqa: E402
 
 B = 4.0                         # rms length of a spring; radius of a bead, viscosity and kT are 1
 BEADS = 6400                    # of a run, in as many chains as that makes
@@ -90,7 +90,7 @@ def diffuse(out, n, interact, x):
 
 
 def draw(rows, shown, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, (left, axis) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained")
     left.plot(shown[:, 0], shown[:, 2], "-", color="0.7", lw=1)
     left.scatter(shown[:, 0], shown[:, 2], s=26, c=np.arange(len(shown)), cmap="viridis", zorder=2, edgecolors="black",

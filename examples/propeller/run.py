@@ -21,7 +21,7 @@ SEDIMENTATION = HERE.parent / "sedimentation"
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from rigid import rigid_velocities, rotation_between  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, read_table, values, TOP  # noqa: E402
+from runs import np, plt, TOP, dumped, finished, need, open_axes, options, read_table, values  # noqa: E402
 
 WEIGHT = np.array([0.0, 0.0, -4 * 6 * np.pi])       # four spheres; viscosity, radius and their settling velocity are 1
 MIRROR = np.diag([-1.0, 1.0, 1.0])
@@ -138,7 +138,7 @@ def balls(axis, x, colours):
 
 
 def draw(t, clump, image, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure = plt.figure(figsize=(12, 6.6), layout="constrained")
     grid = figure.add_gridspec(3, 9, height_ratios=[1.1, 1.1, 3])
     # one turn of the steady spin, in eighths

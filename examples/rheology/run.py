@@ -19,7 +19,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from equilibrium import hard_spheres, write_data  # noqa: E402
-from runs import np, plt, finished, need, options, read_table, save, values  # noqa: E402
+from runs import np, plt, finished, need, open_axes, options, read_table, save, values  # noqa: E402
 
 PHIS, PECLETS = (0.3, 0.45), (1, 3, 10, 30, 100, 1000)
 LARGER = 1, 1000
@@ -156,7 +156,7 @@ def chosen(rows, **what):
 
 
 def draw(brownian_rows, larger_rows, grain_rows, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, (left, middle, right) = plt.subplots(1, 3, figsize=(12.5, 4.4), layout="constrained")
     for phi, mark, colour in zip(PHIS, "so", ("C0", "C3")):
         rows = chosen(brownian_rows, phi=phi)

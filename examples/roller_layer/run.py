@@ -16,7 +16,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from exact import sphere_at_wall  # noqa: E402
-from runs import np, plt, listening, need, options, save, values  # noqa: E402
+from runs import np, plt, listening, need, open_axes, options, save, values  # noqa: E402
 
 GAPS = {1.0: "C0", 0.1: "C1"}
 FRACTIONS = [0.02, 0.05, 0.1, 0.2, 0.3, 0.4]
@@ -52,7 +52,7 @@ def velocities(out, x, z, L):
 
 
 def draw(mean, spread, lone, x, v, L, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6), layout="constrained")
     discs = plt.matplotlib.collections.PatchCollection([plt.Circle(p, 1) for p in x], cmap="viridis")
     discs.set_array(v[:, 0])

@@ -15,7 +15,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from exact import along_wall, sphere_at_wall  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
+from runs import np, plt, dumped, finished, need, open_axes, options, save, values  # noqa: E402
 
 FILM = "lubrication yes lubrication_gap 1e-6"
 SLOPE = np.radians(75)
@@ -65,7 +65,7 @@ def strip(axis, run, apart):
 
 
 def draw(runs, exact, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure = plt.figure(figsize=(11, 6.6), layout="constrained")
     panels = figure.add_gridspec(2, 2, height_ratios=[1, 2.6])
     strip(figure.add_subplot(panels[0, :]), runs["film"], 2.3)

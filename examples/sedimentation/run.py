@@ -24,7 +24,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from rigid import rigid_velocities, rotation_between  # noqa: E402
-from runs import np, plt, finished, need, options, read_table, TOP  # noqa: E402
+from runs import np, plt, TOP, finished, need, open_axes, options, read_table  # noqa: E402
 
 # As in in.sedimentation; lengths below are in radii, velocities in those of a lone sphere.
 A, RHO, RHOF, ETA, G = 50e-6, 2500.0, 970.0, 0.97, 9.81
@@ -284,7 +284,7 @@ def ladder_table(times, done, ladder):
 
 
 def draw_ladder(times, done, ladder, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 4.8), gridspec_kw={"width_ratios": [1.25, 1]},
                                          constrained_layout=True)
     names = list(GEOMETRY)
@@ -349,7 +349,7 @@ def check_ladder(c, done, ladder, own, times):
 
 
 def draw(done, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 5), gridspec_kw={"width_ratios": [1.25, 1]},
                                          constrained_layout=True)
 

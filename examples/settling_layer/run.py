@@ -16,7 +16,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
+from runs import np, plt, dumped, finished, need, open_axes, options, save, values  # noqa: E402
 
 SPACING, STEP, K = 3.0, 0.05, 12.0
 EARLY, FIRST = 2.0, 1.5         # until here speeds are those of the beginning; a centre below is in the first layer
@@ -59,7 +59,7 @@ def fraction_at(x, L, bins):
 
 
 def draw(frames, thermo, L, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure = plt.figure(figsize=(11, 6.6), layout="constrained")
     upper, lower = figure.subfigures(2, 1, height_ratios=[1.25, 1])
     top, wide = max(x[:, 2].max() for _, x in frames) + 1, min(L, 50.0)

@@ -18,7 +18,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 import fill  # noqa: E402
 from checks import Checks  # noqa: E402
-from runs import np, plt, finished, need, options, save, values  # noqa: E402
+from runs import np, plt, finished, need, open_axes, options, save, values  # noqa: E402
 
 # spheres on the axis of an ellipsoid of half-axes 3, 1, 1: limits of the errors of drag and rotation, per cent
 ON_AXIS = {9: (2.2, 6), 15: (0.9, 2.4), 25: (0.5, 1)}
@@ -143,7 +143,7 @@ def balls(panel, x, radius):
 
 
 def draw(rows, path, c):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure = plt.figure(figsize=(12, 5.4), layout="constrained")
     grid = figure.add_gridspec(2, 3, width_ratios=[1, 1, 1.3])
     for k, (words, gap) in enumerate(SHOWN.items()):

@@ -15,7 +15,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from in_lammps import InLammps  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, read_table, save, values  # noqa: E402
+from runs import np, plt, dumped, finished, need, open_axes, options, read_table, save, values  # noqa: E402
 
 EXACT = {key: np.array([float(row[key]) for row in read_table(HERE / "exact.csv")])
          for key in ("gap", "A", "B", "S_along", "S_with", "S_across")}
@@ -118,7 +118,7 @@ def half_turn(path, time):
 
 
 def draw(found, paths, exact, target):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, (left, middle, right) = plt.subplots(1, 3, figsize=(13, 4.6), layout="constrained",
                                                  width_ratios=[1, 1, 1.5])
     for panel, first, names in ((left, 0, ("A", "B")), (middle, 2, ("S_along", "S_with", "S_across"))):

@@ -14,7 +14,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, save  # noqa: E402
+from runs import np, plt, dumped, finished, need, open_axes, options, save  # noqa: E402
 
 # Of a sphere of radius 1 over that in open fluid: distance of the walls, height, across them, along them (free to
 # turn). Computed by this project in another code, to the digits that are here.
@@ -56,7 +56,7 @@ def speeds(out, beads, **more):
 
 
 def draw(middle, heights, images, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6), layout="constrained")
     H = np.linspace(2.6, 20, 200)
     left.plot(H, faxen(H), "k-", lw=1, label="along, Faxen's series")

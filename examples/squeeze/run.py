@@ -14,7 +14,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from exact import approach_drag  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
+from runs import np, plt, dumped, finished, need, open_axes, options, save, values  # noqa: E402
 
 
 def squeeze_time(gaps):
@@ -36,7 +36,7 @@ def lammps(out, tag, **variables):
 
 
 def draw(pressed, exact_gap, passed, exact, target):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 5), layout="constrained", width_ratios=[1.3, 1])
     left.semilogy(*exact_gap, "k-", lw=1, label="exact (Brenner 1961)")
     for tag, colour, label in (("yes", "C0", "lubrication yes"), ("no", "C3", "lubrication no")):

@@ -16,7 +16,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from rigid import rigid_velocities  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, save, values  # noqa: E402
+from runs import np, plt, dumped, finished, need, open_axes, options, save, values  # noqa: E402
 
 TORQUE, STIFFNESS = 20.0, 20.0
 ACROSS, HIGH = 5, 16.0          # spheres along an edge of a plate, and height of the box: two gaps of half of it
@@ -156,7 +156,7 @@ def plates(out, c):
 
 
 def draw(bug, a, profile, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, panels = plt.subplots(1, 2, figsize=(10, 4.6), layout="constrained", width_ratios=[1.15, 1])
     for k, shade in ((0, 0.25), (len(bug) // 2, 0.5), (len(bug) - 1, 1.0)):
         x = bug[k][:, 2:5]

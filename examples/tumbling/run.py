@@ -16,7 +16,7 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
-from runs import np, plt, finished, need, options, TOP  # noqa: E402
+from runs import np, plt, TOP, finished, need, open_axes, options  # noqa: E402
 
 # Effective aspect ratios of chains of touching spheres in exact Stokes flow (Lamb's multipole solution, computed
 # independently of the plugin's code, 1e-8); the period is 2 pi (re + 1/re)/shear rate (Jeffery 1922; Bretherton 1962).
@@ -93,7 +93,7 @@ class Case:
 
 
 def draw(done, out, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     chains = [c for c in done if c.tilt == 0 and c.ranks == 1 and c.shell == 42]
     figure = plt.figure(figsize=(12, 6.6), layout="constrained")
     grid = figure.add_gridspec(2, 9, height_ratios=[3, 1])

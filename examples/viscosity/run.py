@@ -18,7 +18,7 @@ sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from equilibrium import hard_spheres, write_data  # noqa: E402
 from in_lammps import InLammps  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, read_table, save, values  # noqa: E402
+from runs import np, plt, dumped, finished, need, open_axes, options, read_table, save, values  # noqa: E402
 
 MODELS = ("multiblob 12", "multiblob 42")
 PHIS, N, SETTLED, BLOCK = (0.1, 0.2, 0.3, 0.4), 200, 5.0, 2.5
@@ -155,7 +155,7 @@ def order_of_the_step(out, phi=0.2, n=32, strain=0.4):
 
 
 def draw(clumps, table, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6), layout="constrained", width_ratios=[1, 1.2])
     names, place = list(clumps), np.arange(len(clumps))
     left.bar(place, [exact for exact, _ in clumps.values()], color="0.8", width=0.7, label="exact")

@@ -15,7 +15,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from checks import Checks  # noqa: E402
 from exact import along_wall, sphere_in_shear  # noqa: E402
-from runs import np, plt, dumped, finished, need, options, save  # noqa: E402
+from runs import np, plt, dumped, finished, need, open_axes, options, save  # noqa: E402
 
 FILM = "lubrication yes lubrication_gap 1e-6"
 MODELS = {"points": ("C3", "rotation", "rotation yes"),
@@ -37,7 +37,7 @@ def lammps(out, model):
 
 
 def draw(runs, exact, path):
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    open_axes()
     figure, axes = plt.subplots(1, 4, figsize=(13, 3.8), layout="constrained")
     for axis, (name, title) in zip(axes, WHAT.items()):
         axis.semilogx(exact["gap"], exact[name], "k-", lw=1, label="exact")
