@@ -90,35 +90,8 @@ void Noise::draw_alone(const Hydrodynamics &hydro, size_t width, const ToAtom &t
   }
 }
 
-/* M of width numbers a row, from that of the engine, which may have torques where nobody turns by
- * its noise. Where the engine's M divides, the part that is not drawn at once. */
-struct Forces {
-  size_t rows, width, engine_width;
-  /* [width rows] */
-  const double *D;
-  sd_mobility *engine;
-  /* nullptr: nobody sees anybody */
-  sd_apply *apply;
-  /* [engine_width rows] */
-  std::vector<double> F, u;
-};
-
-static sd_status apply_forces(void *ctx, const double *F, double *u)
-{
-  Forces &m = *static_cast<Forces *>(ctx);
-  for (size_t k = 0; k < m.rows && m.apply; k++)
-    std::copy_n(F + m.width * k, m.width, &m.F[m.engine_width * k]);
-  const sd_status status = m.apply ? m.apply(m.engine, m.F.data(), m.u.data()) : SD_OK;
-  for (size_t k = 0; k < m.rows; k++)
-    for (size_t d = 0; d < m.width; d++) {
-      const size_t j = m.width * k + d;
-      u[j] = m.D[j] > 0.0 ? m.u[m.engine_width * k + d] + F[j] / m.D[j] : 0.0;
-    }
-  return status;
-}
-
 /* The rows with their numbers w and drags D, and the matrix: whole */
-void Noise::place(Hydrodynamics &hydro, size_t width, Forces &forces, sd_noise_matrix &M)
+sd_noise_spheres Noise::find_spheres(Hydrodynamics &hydro, size_t width)
 {
   Scene &scene = hydro.scene;
   const size_t n = scene.size();
@@ -130,16 +103,9 @@ void Noise::place(Hydrodynamics &hydro, size_t width, Forces &forces, sd_noise_m
   for (size_t k = 0; k < n; k++)
     sd_random_normals(&of_sphere, scene.tag(k), (int) width, &w[width * k]);
   const size_t engine_width = hydro.rotation() ? 6 : 3;
-  forces = {n, width, engine_width, D.data(), scene.mobility(), nullptr, {}, {}};
-  forces.F.assign(engine_width * (n + 1), 0.0);
-  forces.u.assign(engine_width * (n + 1), 0.0);
-  if (scene.anybody_sees()) forces.apply = sd_mobility_apply;
-  M = {};
-  M.n = (long) (width * n);
-  M.apply = apply_forces;
-  M.ctx = &forces;
-  M.D = D.data();
-  M.world = scene.ranks();
+  for (auto *rows : {&engine_F, &engine_u}) rows->assign(engine_width * (n + 1), 0.0);
+  return {n, width, engine_width, D.data(), scene.anybody_sees() ? sd_mobility_apply : nullptr, scene.mobility(),
+          engine_F.data(), engine_u.data()};
 }
 
 void Noise::no_root(sd_status status) const
@@ -152,19 +118,21 @@ void Noise::no_root(sd_status status) const
 
 void Noise::draw_together(Hydrodynamics &hydro, size_t width, const ToAtom &take)
 {
-  Forces forces;
-  sd_noise_matrix M;
-  place(hydro, width, forces, M);
-  divided = forces.apply && sd_mobility_divides(forces.engine);
-  if (divided) forces.apply = sd_mobility_apply_rest;
-  sd_status status =
-      sd_noise_velocities(&process, &M, w.data(), tolerance / 3.0, y.data(), &last);
+  sd_mobility *engine = hydro.scene.mobility();
+  sd_noise_spheres spheres = find_spheres(hydro, width);
+  divided = spheres.apply && sd_mobility_divides(engine);
+  if (divided) spheres.apply = sd_mobility_apply_rest;
+  sd_noise_matrix M = {};
+  M.n = (long) (width * spheres.n);
+  M.apply = sd_noise_spheres_apply;
+  M.ctx = &spheres;
+  M.D = D.data();
+  M.world = hydro.scene.ranks();
+  sd_status status = sd_noise_velocities(&process, &M, w.data(), tolerance / 3.0, y.data(), &last);
   const sd_random_key of_waves = key(SD_RANDOM_GRID);
-  if (status == SD_OK && divided)
-    status = sd_mobility_draw(forces.engine, &of_waves, forces.u.data());
+  if (status == SD_OK && divided) status = sd_mobility_draw(engine, &of_waves, engine_u.data());
   if (status != SD_OK) no_root(status);
-  for (size_t k = 0; k < forces.rows && divided; k++)
-    for (size_t d = 0; d < width; d++) y[width * k + d] += forces.u[forces.engine_width * k + d];
+  if (divided) sd_noise_spheres_add(&spheres, engine_u.data(), y.data());
   hydro.scene.to_atoms((int) width, y.data(), take);
 }
 

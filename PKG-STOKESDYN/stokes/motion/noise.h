@@ -14,7 +14,7 @@
 #include "pointers.h"
 #include "solve.h"
 
-#include "sd_noise.h"
+#include "sd_noise_spheres.h"
 #include "sd_random.h"
 
 #include <functional>
@@ -81,8 +81,8 @@ class Noise : protected LAMMPS_NS::Pointers {
   Owned<sd_bodies_noise, sd_bodies_noise_free> of_bodies;
   sd_noise_report last = {};
   std::vector<double> of_clumps;
-  /* by rows, width numbers each */
-  std::vector<double> D, w, y;
+  /* by rows, width numbers each; and as many as the engine's rows have */
+  std::vector<double> D, w, y, engine_F, engine_u;
   /* by a matrix in two parts (sd_mobility.h) */
   bool divided = false;
   /* noise is a slip; a part that should be positive was not, and the user knows */
@@ -93,7 +93,7 @@ class Noise : protected LAMMPS_NS::Pointers {
   void find_temperature(const Hydrodynamics &hydro);
   [[noreturn]] void no_root(sd_status status) const;
   void draw_alone(const Hydrodynamics &hydro, size_t width, const ToAtom &take);
-  void place(Hydrodynamics &hydro, size_t width, struct Forces &forces, sd_noise_matrix &M);
+  sd_noise_spheres find_spheres(Hydrodynamics &hydro, size_t width);
   void draw_together(Hydrodynamics &hydro, size_t width, const ToAtom &take);
 };
 

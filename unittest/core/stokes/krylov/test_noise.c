@@ -2,7 +2,7 @@
  * every single mode at the default tolerance, without the scatter of sampling. */
 #include "clouds.h"
 
-#include "sd_noise.h"
+#include "sd_noise_spheres.h"
 #include "sd_random.h"
 
 #include <string.h>
@@ -289,6 +289,35 @@ static void products_grow_slowly_with_the_cloud(void **state)
   scene_free(&s);
 }
 
+/* An engine with torques, of which the noise has forces alone: the block of forces, D^-1 on its diagonal, and nothing
+ * of the sphere that takes no part. Without an engine D^-1 is all. */
+static void the_matrix_of_spheres_leaves_out_torques(void **state)
+{
+  (void) state;
+  enum { N = 3, ALL = 6 * N };
+  uint64_t seed = 5;
+  double A[ALL * ALL], D[3 * N], F[3 * N], u[3 * N], more[3 * N] = {0.0}, scratch[2 * ALL] = {0.0};
+  for (int k = 0; k < ALL * ALL; k++) A[k] = uniform(&seed, -1.0, 1.0);
+  for (int k = 0; k < 3 * N; k++) {
+    D[k] = k / 3 == 1 ? 0.0 : uniform(&seed, 1.0, 2.0);
+    F[k] = k / 3 == 1 ? 0.0 : uniform(&seed, -1.0, 1.0);
+  }
+  dense Omega = {ALL, A};
+  sd_noise_spheres s = {N, 3, 6, D, dense_apply, &Omega, scratch, scratch + ALL};
+  assert_int_equal(sd_noise_spheres_apply(&s, F, u), SD_OK);
+  for (int k = 0; k < 3 * N; k++) {
+    double sum = D[k] > 0.0 ? F[k] / D[k] : 0.0;
+    for (int j = 0; j < 3 * N && D[k] > 0.0; j++) sum += A[ALL * (6 * (k / 3) + k % 3) + 6 * (j / 3) + j % 3] * F[j];
+    CHECK_NEAR(u[k], sum, 1e-14);
+  }
+  sd_noise_spheres_add(&s, scratch + ALL, more);
+  for (int k = 0; k < 3 * N; k++) CHECK_NEAR(more[k], scratch[ALL + 6 * (k / 3) + k % 3], 0.0);
+  s.apply = NULL;
+  memset(scratch, 0, sizeof(scratch));
+  assert_int_equal(sd_noise_spheres_apply(&s, F, u), SD_OK);
+  for (int k = 0; k < 3 * N; k++) CHECK_NEAR(u[k], D[k] > 0.0 ? F[k] / D[k] : 0.0, 0.0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -300,6 +329,7 @@ int main(void)
       cmocka_unit_test(lone_spheres_take_one_product),
       cmocka_unit_test(what_has_no_root_is_refused),
       cmocka_unit_test(products_grow_slowly_with_the_cloud),
+      cmocka_unit_test(the_matrix_of_spheres_leaves_out_torques),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
