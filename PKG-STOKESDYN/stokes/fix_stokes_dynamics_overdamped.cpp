@@ -1,13 +1,14 @@
 #include "fix_stokes_dynamics_overdamped.h"
 
 #include "boundary_checks.h"
+#include "checks.h"
 #include "copy.h"
+#include "deform_checks.h"
 #include "fix_stokes_dynamics_field.h"
 #include "fixes.h"
 #include "keywords.h"
 #include "lammps_compat.h"
 #include "own_fix.h"
-#include "checks.h"
 
 #include "sd_linear.h"
 

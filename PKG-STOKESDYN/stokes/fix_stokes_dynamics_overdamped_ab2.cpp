@@ -25,7 +25,7 @@ void FixStokesDynamicsOverdamped::at_image(const Hydrodynamics &hydro, const dou
   copy<6>(row, old);
   if (!hydro.ambient.box_motion().deforms) return;    // all images have the same velocity
   for (int d = 0; d < 3; d++) shift[d] = place[d] - row[6 + d];
-  sd_multiply3(hydro.ambient.box_motion().gradient, shift, jump);
+  sd_multiply3(hydro.ambient.box_motion().flow.gradient, shift, jump);
   for (int d = 0; d < 3; d++) old[d] += jump[d];
 }
 

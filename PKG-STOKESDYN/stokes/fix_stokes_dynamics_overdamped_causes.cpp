@@ -34,9 +34,9 @@ void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double
     const double eta = hydro.ambient.viscosity(i);
     hydro.ambient.fluid(i, fluid);
     if (hydro.ambient.jumps()) {    // LAMMPS may have made an image of it since
-      hydro.ambient.box_motion().at(atom->x[i], of_box);
+      sd_box_flow_at(&hydro.ambient.box_motion().flow, atom->x[i], of_box);
       for (int d = 0; d < 3; d++) fluid[d] -= of_box[d];
-      sd_hash_add_row(tag, hydro.ambient.box_motion().gradient, 9, sums + 4);
+      sd_hash_add_row(tag, hydro.ambient.box_motion().flow.gradient, 9, sums + 4);
     }
     drives.load(i, pushed);
     sd_hash_add_row(tag, pushed, 3, sums);

@@ -1,6 +1,7 @@
-#include "boundary_checks.h"
 #include "pair_stokes_dynamics.h"
 
+#include "boundary_checks.h"
+#include "deform_checks.h"
 #include "fix_stokes_dynamics.h"
 #include "fix_stokes_dynamics_overdamped.h"
 #include "fixes.h"

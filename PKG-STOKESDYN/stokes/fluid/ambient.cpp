@@ -1,6 +1,7 @@
 #include "ambient.h"
 
 #include "copy.h"
+#include "deform_checks.h"
 #include "keywords.h"
 #include "lammps_compat.h"
 #include "ranks.h"
@@ -139,11 +140,11 @@ void Ambient::read_fluid(Derivatives derivatives)
 void Ambient::read_box(bool with_gradients)
 {
   double rotation[3];
-  sd_flow_rotation(motion.gradient, rotation);
+  sd_flow_rotation(motion.flow.gradient, rotation);
   for (size_t i : those) {
-    motion.at(atom->x[i], &u[3 * i]);
+    sd_box_flow_at(&motion.flow, atom->x[i], &u[3 * i]);
     if (!w.empty()) std::copy_n(rotation, 3, &w[3 * i]);
-    if (with_gradients) std::copy_n(motion.gradient, 9, &gradient[9 * i]);
+    if (with_gradients) std::copy_n(motion.flow.gradient, 9, &gradient[9 * i]);
   }
 }
 

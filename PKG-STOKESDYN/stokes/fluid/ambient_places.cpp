@@ -131,7 +131,7 @@ std::vector<double> Ambient::at_places(const std::vector<double> &x)
   std::vector<double> out(3 * n);
   for (size_t k = 0; k < n; k++) std::copy_n(u_uniform, 3, &out[3 * k]);
   if (settings.box)
-    for (size_t k = 0; k < n; k++) motion.at(&x[3 * k], &out[3 * k]);
+    for (size_t k = 0; k < n; k++) sd_box_flow_at(&motion.flow, &x[3 * k], &out[3 * k]);
   else if (!settings.grid && varies()) {
     const std::vector<double> formulas = formulas_at(x);
     for (size_t k = 0; k < 3 * n; k++)
@@ -171,9 +171,9 @@ std::vector<double> Ambient::values() const
   all.push_back(eta_uniform);
   for (const auto *part : {&eta, &u, &w, &gradient, &curvature})
     all.insert(all.end(), part->begin(), part->end());
-  all.insert(all.end(), motion.gradient, motion.gradient + 9);
-  all.insert(all.end(), motion.corner, motion.corner + 3);
-  all.insert(all.end(), motion.corner_velocity, motion.corner_velocity + 3);
+  all.insert(all.end(), motion.flow.gradient, motion.flow.gradient + 9);
+  all.insert(all.end(), motion.flow.corner, motion.flow.corner + 3);
+  all.insert(all.end(), motion.flow.corner_velocity, motion.flow.corner_velocity + 3);
   all.insert(all.end(), jump, jump + 6);
   return all;
 }
@@ -199,9 +199,9 @@ void Ambient::half_a_step_back()
   back(eta_uniform);
   for (auto *part : {&eta, &u, &w, &gradient, &curvature})
     for (double &value : *part) back(value);
-  for (double &value : motion.gradient) back(value);
-  for (double &value : motion.corner) back(value);
-  for (double &value : motion.corner_velocity) back(value);
+  for (double &value : motion.flow.gradient) back(value);
+  for (double &value : motion.flow.corner) back(value);
+  for (double &value : motion.flow.corner_velocity) back(value);
   for (double &value : jump) back(value);
   change.clear();
   // the same for an atom and its images, to rounding

@@ -52,7 +52,7 @@ double Ambient::misfit()
   for (int q = 0; q < 3; q++) {
     if (!domain->periodicity[q]) continue;    // along it nobody sees an image
     edge_of_box(domain, q, edge);
-    sd_multiply3(motion.gradient, edge, of_box);
+    sd_multiply3(motion.flow.gradient, edge, of_box);
     growth_along(edge, of_box, sums, most);
   }
   modify->addstep_compute(update->ntimestep + 1);
@@ -121,7 +121,7 @@ void Ambient::find_jumps()
   for (int q = 0; q < 3; q++) {
     edge_of_box(domain, q, edge);
     if (settings.box)
-      sd_multiply3(motion.gradient, edge, sums[q]);
+      sd_multiply3(motion.flow.gradient, edge, sums[q]);
     else if (domain->periodicity[q])
       growth_along(edge, NOTHING, sums[q], most);
   }

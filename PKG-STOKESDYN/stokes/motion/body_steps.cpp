@@ -140,18 +140,18 @@ void BodySteps::return_to_start()
   directions.restore(mu);
 }
 
-void BodySteps::go(Hydrodynamics &hydro, const StepWithBox &with_box, const Places &there, const Moves &V,
+void BodySteps::go(Hydrodynamics &hydro, const sd_step_in_box &in_box, const Places &there, const Moves &V,
                    Extent extent)
 {
   static const double CENTROID[3] = {0.0, 0.0, 0.0};
   const auto moved = [&](bool stays, const double *v, const double *at, const double *from, double move[6]) {
-    for (int d = 0; d < 6; d++) move[d] = with_box.t * v[d];
-    if (!stays) with_box.displacement(v, at, from, move);
+    for (int d = 0; d < 6; d++) move[d] = in_box.t * v[d];
+    if (!stays) sd_step_in_box_of(&in_box, v, at, from, move);
     keep_in_plane(move);
   };
   return_to_start();
   for (size_t i : began.lone) {
-    const double *v = &V.atoms[6 * i], t = with_box.t, beyond_box[3] = {t * v[0], t * v[1], t * v[2]};
+    const double *v = &V.atoms[6 * i], t = in_box.t, beyond_box[3] = {t * v[0], t * v[1], t * v[2]};
     double move[6];
     moved(drives.stays((int) i), v, &there.atoms[3 * i], &began.x.atoms[3 * i], move);
     step_lone((int) i, move, extent == WHOLE ? beyond_box : nullptr);
@@ -168,29 +168,31 @@ void BodySteps::go(Hydrodynamics &hydro, const StepWithBox &with_box, const Plac
 
 void BodySteps::displace(Hydrodynamics &hydro, const Moves &W, double sign)
 {
-  go(hydro, {sign}, began.x, W, PART);
+  sd_step_in_box jump = {};
+  jump.t = sign;
+  go(hydro, jump, began.x, W, PART);
 }
 
 void BodySteps::half_step(Hydrodynamics &hydro, const Moves &V)
 {
   const double t = 0.5 * update->dt;
-  half_way = box_later(began.flow, began.box, t);
-  if (began.flow.deforms) put_box(domain, half_way);
-  go(hydro, {t, began.carried, began.box, began.box, half_way, began.flow}, began.x, V, PART);
+  half_way = sd_box_later(&began.box_motion.flow, &began.box, t);
+  if (began.box_motion.deforms) put_box(domain, half_way);
+  go(hydro, {t, began.carried, began.box, began.box, half_way, began.box_motion.flow}, began.x, V, PART);
 }
 
 void BodySteps::end_half_steps(const Hydrodynamics &hydro)
 {
   found_at = places(hydro);
-  if (began.flow.deforms) put_box(domain, began.box);
+  if (began.box_motion.deforms) put_box(domain, began.box);
 }
 
 void BodySteps::whole_step(Hydrodynamics &hydro, const Moves &V)
 {
   const Ambient &ambient = hydro.ambient;
   bring_box_to_this_step(lmp);
-  const StepWithBox all = {update->dt,     ambient.jumps() != nullptr, began.box, half_way,
-                           box_of(domain), ambient.box_motion()};
+  const sd_step_in_box all = {update->dt,     ambient.jumps() != nullptr, began.box, half_way,
+                              box_of(domain), ambient.box_motion().flow};
   go(hydro, all, found_at, V, WHOLE);
 }
 

@@ -65,7 +65,7 @@ class BodySteps : protected LAMMPS_NS::Pointers {
     std::vector<int> who, lone;
     Places x;
     sd_box box;
-    BoxMotion flow;
+    BoxMotion box_motion;
     bool carried;
   };
   void begin(const Hydrodynamics &);
@@ -120,7 +120,7 @@ class BodySteps : protected LAMMPS_NS::Pointers {
   enum Extent { PART, WHOLE };
   static Clumps clumps_now(const Hydrodynamics &);
   Places places(const Hydrodynamics &) const;
-  void go(Hydrodynamics &, const StepWithBox &with_box, const Places &there, const Moves &V,
+  void go(Hydrodynamics &, const sd_step_in_box &in_box, const Places &there, const Moves &V,
           Extent extent);
   template <class Give>
   void step_clump(const ClumpPoses &, const Clumps &from, size_t c, const ClumpStep &goes, const double *box,

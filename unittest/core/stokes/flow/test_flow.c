@@ -1,6 +1,7 @@
 /* Gradients of a flow. */
 #include "check.h"
 
+#include "sd_box_flow.h"
 #include "sd_flow.h"
 
 #include <math.h>
@@ -116,6 +117,60 @@ static void a_bent_flow_carries_a_sphere_with_its_mean(void **state)
   for (int d = 0; d < 3; d++) CHECK_NEAR(out[d], mean[d], 1e-14);
 }
 
+/* A box of skew edges, and one that grows, shears and drifts */
+static const sd_box BOX = {{-1.5, 0.4, 2.2}, {3.1, 2.3, 4.7, 0.9, -1.3, 0.6}};
+static const sd_box_flow DRIFT = {{0.2, -0.7, 0.3, 0.0, -0.1, 0.5, 0.0, 0.0, 0.4}, {-1.5, 0.4, 2.2}, {1.1, -0.2, 0.7}};
+
+/* Points at fixed fractions of the box are carried by the flow, for a short time t: x + t u(x) stands at the same
+ * fractions of the later box, exactly, as edges change evenly. */
+static void a_later_box_has_its_points_where_the_flow_takes_them(void **state)
+{
+  (void) state;
+  const double t = 0.3;
+  const sd_box then = sd_box_later(&DRIFT, &BOX, t);
+  const int corner[3] = {1, -2, 3};
+  double x[3], end[3], u[3];
+  memcpy(x, BOX.lo, sizeof(x));
+  memcpy(end, then.lo, sizeof(end));
+  sd_add_edges(BOX.h, corner, x);
+  sd_add_edges(then.h, corner, end);
+  sd_box_flow_at(&DRIFT, x, u);
+  for (int d = 0; d < 3; d++) CHECK_NEAR(x[d] + t * u[d], end[d], 1e-13);
+}
+
+/* Whoever goes with the flow keeps his place in the box; a body and its image, whose velocities differ by the flow's,
+ * end an edge of the later box apart. Where nothing is carried a step is t V. */
+static void steps_in_a_box_are_the_same_for_all_images(void **state)
+{
+  (void) state;
+  const double t = 0.2, V[3] = {0.7, -1.3, 0.4}, x[3] = {0.2, 1.1, 3.3};
+  const int edges[3] = {1, -1, 2};
+  const sd_box then = sd_box_later(&DRIFT, &BOX, t);
+  sd_step_in_box s = {t, 1, BOX, BOX, then, DRIFT};
+  double u[3], step[3], f[3], there[3], r[3];
+  sd_box_flow_at(&DRIFT, x, u);
+  sd_step_in_box_of(&s, u, x, x, step);
+  for (int d = 0; d < 3; d++) r[d] = x[d] - BOX.lo[d];
+  sd_in_edges(BOX.h, r, f);
+  for (int d = 0; d < 3; d++) r[d] = x[d] + step[d] - then.lo[d];
+  sd_in_edges(then.h, r, there);
+  for (int d = 0; d < 3; d++) CHECK_NEAR(there[d], f[d], 1e-14);
+
+  double image[3], its_V[3], its_step[3], apart[3] = {0.0};
+  memcpy(image, x, sizeof(image));
+  sd_add_edges(BOX.h, edges, image);
+  sd_box_flow_at(&DRIFT, image, its_V);
+  for (int d = 0; d < 3; d++) its_V[d] += V[d] - u[d];
+  sd_step_in_box_of(&s, V, x, x, step);
+  sd_step_in_box_of(&s, its_V, image, image, its_step);
+  sd_add_edges(then.h, edges, apart);
+  for (int d = 0; d < 3; d++) CHECK_NEAR(image[d] + its_step[d] - x[d] - step[d], apart[d], 1e-13);
+
+  s.carried = 0;
+  sd_step_in_box_of(&s, V, x, x, step);
+  for (int d = 0; d < 3; d++) CHECK_NEAR(step[d], t * V[d], 0.0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -125,6 +180,8 @@ int main(void)
       cmocka_unit_test(flow_of_a_cell_moves_its_edges),
       cmocka_unit_test(second_differences_of_a_cubic_flow_are_exact),
       cmocka_unit_test(a_bent_flow_carries_a_sphere_with_its_mean),
+      cmocka_unit_test(a_later_box_has_its_points_where_the_flow_takes_them),
+      cmocka_unit_test(steps_in_a_box_are_the_same_for_all_images),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
