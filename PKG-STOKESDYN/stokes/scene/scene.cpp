@@ -17,7 +17,7 @@ using namespace LAMMPS_NS;
 namespace StokesDyn {
 
 Scene::Scene(const Voice &voice, Epochs &epochs, Settings &settings) :
-    Pointers(voice.lmp), settings(settings), whole(voice, epochs), voice(voice), epochs(epochs),
+    Pointers(voice.lmp), settings(settings), whole(voice, epochs), cloud(voice.lmp), voice(voice), epochs(epochs),
     halo(world), halo_of_points(world)
 {
 }
@@ -134,9 +134,9 @@ void Scene::update(const std::vector<int> &who, const Ambient &ambient, std::vec
       tell();
       place(size_with_copies(), idle);
     } else {
-      gather();
-      look_for_others(n_all);
-      place(n_all, idle);
+      cloud.gather(local(), tags, molecules, epochs.rows);
+      look_for_others(cloud.size());
+      place(cloud.size(), idle);
     }
     return;
   }
@@ -202,15 +202,15 @@ static const int FLOATS_FROM = 512;
 /* The spheres where they stand, and what their engine may ask. */
 void Scene::place(int n_all_or_copies, std::vector<double> &idle)
 {
-  const bool cloud = view() == SD_VIEW_ALL;
+  const bool by_cloud = view() == SD_VIEW_ALL;
   sd_mobility_scene scene = {};
   scene.how = {law(), width(), &ewald, &second_level, &slab, harmless_error()};
   scene.n = size();
   scene.n_all = n_all_or_copies;
-  scene.spheres = cloud ? this->cloud() : local();
+  scene.spheres = by_cloud ? cloud.spheres() : local();
   scene.pairs = view() == SD_VIEW_LIST ? &list() : nullptr;
   scene.one_sided = one_sided();
-  scene.world = cloud ? ranks_of_cloud() : ranks();
+  scene.world = by_cloud ? ranks_of_cloud() : ranks();
   if (shells) place_points(n_all_or_copies, idle, scene);
   if (scene.n_all < FLOATS_FROM) scene.how.tolerance = 0.0;
   const sd_status status = sd_mobility_place(&omega, engine, &scene);
@@ -225,7 +225,7 @@ std::vector<double> Scene::turned_shells(int n_all_or_copies)
   const size_t width = shells->sent_width(), own = width * size();
   std::vector<double> rows = shells->sent(size()), all(width * n_all_or_copies + 1);
   if (view() == SD_VIEW_ALL)
-    to_cloud(rows.data(), all.data(), (int) width);
+    cloud.to_all(rows.data(), all.data(), (int) width);
   else {
     std::copy_n(rows.begin(), own, all.begin());
     halo.refresh(rows.data(), &all[own], (int) width);
@@ -236,7 +236,7 @@ std::vector<double> Scene::turned_shells(int n_all_or_copies)
 /* The same with the points of the spheres */
 void Scene::place_points(int n_all_or_copies, std::vector<double> &idle, sd_mobility_scene &scene)
 {
-  shells->expand(n_all_or_copies, turned_shells(n_all_or_copies), view() == SD_VIEW_ALL ? cloud() : local(),
+  shells->expand(n_all_or_copies, turned_shells(n_all_or_copies), view() == SD_VIEW_ALL ? cloud.spheres() : local(),
                  engine->reads_places_once ? &idle : nullptr);
   scene.n = shells->first_of_rows()[size()];
   scene.n_all = shells->first_of_all()[n_all_or_copies];
@@ -256,92 +256,20 @@ sd_world Scene::ranks_of_cloud()
   all.ranks = comm->nprocs;
   all.spread = [](void *ctx, const double *rows, double *cloud_rows, int width) {
     Scene *scene = static_cast<Scene *>(ctx);
-    return callback([=] { scene->to_cloud(rows, cloud_rows, width, scene->first_in_cloud()); });
+    return callback([=] { scene->cloud.to_all(rows, cloud_rows, width, scene->first_in_cloud()); });
   };
   all.collect = [](void *ctx, const double *cloud_rows, double *rows, int width) {
     Scene *scene = static_cast<Scene *>(ctx);
-    return callback([=] { scene->from_cloud(cloud_rows, rows, width, scene->first_in_cloud()); });
+    return callback([=] { scene->cloud.to_own(cloud_rows, rows, width, scene->first_in_cloud()); });
   };
   return all;
-}
-
-/* The cloud: the spheres of all ranks, sorted by tag. */
-void Scene::gather()
-{
-  struct Sphere {
-    double x[3], a, w;
-    int64_t tag, molecule;
-  };
-  std::vector<Sphere> told;    // of one rank nobody need be
-  for (size_t k = 0; k < tags.size() && comm->nprocs > 1; k++)
-    told.push_back({{x[3 * k], x[3 * k + 1], x[3 * k + 2]}, a[k], w[k], tags[k], molecules[k]});
-  if (comm->nprocs > 1) told = from_all(world, told);
-  const auto tag_of = [&](size_t j) { return comm->nprocs > 1 ? told[j].tag : tags[j]; };
-  spheres_of_rank = from_all(world, std::vector<int>(1, size()));
-  n_all = comm->nprocs > 1 ? (int) told.size() : size();
-  if (!sorted.is(epochs.rows)) {
-    std::vector<int> by_tag(n_all);
-    for (int j = 0; j < n_all; j++) by_tag[j] = j;
-    std::sort(by_tag.begin(), by_tag.end(), [&](int p, int q) { return tag_of(p) < tag_of(q); });
-    place_of.resize(n_all);
-    for (int k = 0; k < n_all; k++) place_of[by_tag[k]] = k;
-    sorted.set(epochs.rows);
-  }
-  all_x.resize(3 * (size_t) n_all);
-  for (auto *v : {&all_a, &all_w}) v->resize(n_all);
-  all_molecule.resize(n_all);
-  const auto put = [&](size_t j, const double *place, double radius, double fluid, int64_t of_clump) {
-    const size_t k = place_of[j];
-    copy<3>(place, &all_x[3 * k]);
-    all_a[k] = radius;
-    all_w[k] = fluid;
-    all_molecule[k] = of_clump;
-  };
-  if (comm->nprocs > 1)
-    for (size_t j = 0; j < told.size(); j++) put(j, told[j].x, told[j].a, told[j].w, told[j].molecule);
-  else
-    for (size_t j = 0; j < tags.size(); j++) put(j, &x[3 * j], a[j], w[j], molecules[j]);
-}
-
-void Scene::to_cloud(const double *own_rows, double *cloud_rows, int width, const int *first)
-{
-  const size_t m = width, here = first ? (size_t) points_here() : size();
-  std::vector<double> all;
-  if (comm->nprocs > 1) all = from_all(world, std::vector<double>(own_rows, own_rows + m * here));
-  const double *from = comm->nprocs > 1 ? all.data() : own_rows;
-  for (int j = 0; j < n_all; j++) {
-    const size_t k = place_of[j], at = first ? first[k] : k, count = first ? first[k + 1] - at : 1;
-    copy_row(m * count, from, cloud_rows + m * at);
-    from += m * count;
-  }
-}
-
-void Scene::from_cloud(const double *cloud_rows, double *own_rows, int width, const int *first)
-{
-  const size_t m = width;
-  in_order_of_rank.resize(m * (first ? first[n_all] : n_all) + 1);
-  double *to = comm->nprocs > 1 ? in_order_of_rank.data() : own_rows;
-  std::vector<int> counts;
-  int j = 0;
-  for (int spheres : spheres_of_rank) {
-    const double *start = to;
-    for (const int end = j + spheres; j < end; j++) {
-      const size_t k = place_of[j], at = first ? first[k] : k, count = first ? first[k + 1] - at : 1;
-      copy_row(m * count, cloud_rows + m * at, to);
-      to += m * count;
-    }
-    counts.push_back(mpi_count((double) (to - start)));
-  }
-  if (comm->nprocs == 1) return;
-  MPI_Reduce_scatter(in_order_of_rank.data(), own_rows, counts.data(), MPI_DOUBLE, MPI_SUM, world);
 }
 
 double Scene::memory_usage() const
 {
   return sizeof(int) * ((double) candidates.room + pairs.room + row_of.capacity()) +
-      sizeof(double) *
-      (x.capacity() + a.capacity() + w.capacity() + 5.0 * n_all) +
-      2.0 * sizeof(int64_t) * (double) tags.capacity() + halo.memory_usage() +
+      sizeof(double) * (double) (x.capacity() + a.capacity() + w.capacity()) +
+      2.0 * sizeof(int64_t) * (double) tags.capacity() + cloud.memory_usage() + halo.memory_usage() +
       whole.memory_usage();
 }
 

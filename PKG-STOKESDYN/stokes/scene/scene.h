@@ -10,6 +10,7 @@
 
 #include "ambient.h"
 #include "boundary.h"
+#include "cloud.h"
 #include "copy.h"
 #include "halo.h"
 #include "pointers.h"
@@ -77,6 +78,8 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* Since when all of this is as it is */
   const Epochs &all_epochs() const { return epochs; }
   WholeClumps whole;
+  /* Those of all ranks, in view ALL */
+  Cloud cloud;
   /* Spheres are shells of points, which are what the engine sees; nullptr: they are points */
   Shells *shells = nullptr;
   /* With shells: finds which each sphere has, and turns those of clumps, when the rows stand */
@@ -188,20 +191,6 @@ class Scene : protected LAMMPS_NS::Pointers {
     return {settings.tensor, settings.taper, settings.cutoff, settings.boundary.image_wall()};
   }
 
-  /* View ALL: the spheres of all ranks that take part, in order of tag, the same on every rank. */
-  int cloud_size() const { return n_all; }
-  sd_spheres cloud() const { return {all_x.data(), all_a.data(), all_w.data()}; }
-  const std::vector<int64_t> &cloud_molecules() const { return all_molecule; }
-  /* From rows of this rank's spheres to rows of the cloud, and, summed over the ranks, back. */
-  void to_cloud(const double *own_rows, double *cloud_rows, int width)
-  {
-    to_cloud(own_rows, cloud_rows, width, nullptr);
-  }
-  void from_cloud(const double *cloud_rows, double *own_rows, int width)
-  {
-    from_cloud(cloud_rows, own_rows, width, nullptr);
-  }
-
   /* u = Omega F since the last update(): context of sd_mobility_apply. */
   sd_mobility *mobility() { return &omega; }
   /* What the core may ask of the other ranks: of the rows of spheres */
@@ -213,7 +202,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   const Voice voice;
   Epochs &epochs;
 
-  Stamp rows_found, pairs_found, sorted;
+  Stamp rows_found, pairs_found;
   bool somebody_sees = false;
   /* atoms that take part; those whose rows are the first here; rows of the members of whole */
   std::vector<int> own, lone_atoms, row_of;
@@ -228,15 +217,6 @@ class Scene : protected LAMMPS_NS::Pointers {
   bool jumping = false;
   Halo halo, halo_of_points;
   Owned<sd_neighbors, sd_neighbors_free> candidates, pairs;
-
-  // view ALL: the spheres of all ranks in order of tag: nothing depends on the decomposition
-  /* [n_all] place of each sphere, the ranks' spheres one after the other */
-  std::vector<int> place_of;
-  /* [nprocs] */
-  std::vector<int> spheres_of_rank;
-  std::vector<double> all_x, all_a, all_w, in_order_of_rank;
-  std::vector<int64_t> all_molecule;
-  int n_all = 0;
 
   /* slab: ewald is that of its taller box */
   sd_ewald ewald = {};
@@ -280,14 +260,10 @@ class Scene : protected LAMMPS_NS::Pointers {
   void surround(bool found, const std::string &keyword);
   void find_pairs();
   void look_for_others(double spheres);
-  void gather();
   void place(int n_all_or_copies, std::vector<double> &idle);
   std::vector<double> turned_shells(int n_all_or_copies);
   void place_points(int n_all_or_copies, std::vector<double> &idle, sd_mobility_scene &scene);
   sd_world ranks_of_cloud();
-  /* Of each sphere width numbers, or so many for each of its rows, first [n_all + 1] */
-  void to_cloud(const double *own_rows, double *cloud_rows, int width, const int *first);
-  void from_cloud(const double *cloud_rows, double *own_rows, int width, const int *first);
   [[noreturn]] void out_of_memory();
 };
 

@@ -79,8 +79,8 @@ void refuse_close_oseen(const Voice &voice, const Scene &scene)
   double mine;
   sd_status status;
   if (scene.view() == SD_VIEW_ALL) {
-    const sd_spheres spheres = scene.cloud();
-    const int64_t n = scene.cloud_size();
+    const sd_spheres spheres = scene.cloud.spheres();
+    const int64_t n = scene.cloud.size();
     const int from = n * comm->me / comm->nprocs, to = n * (comm->me + 1) / comm->nprocs;
     status = sd_oseen_coupling(&law, &spheres, nullptr, n, from, to - from, &mine);
   } else {

@@ -53,7 +53,7 @@ bool Preconditioner::few() const
 void Preconditioner::attach(sd_system &system, AtomRows &at, std::vector<double> &its_box)
 {
   cloud = scene.view() == SD_VIEW_ALL;
-  n = cloud ? scene.cloud_size() : scene.size();
+  n = cloud ? scene.cloud.size() : scene.size();
   width = system.spin ? 6 : 3;
   put_in.never();
   places = &at;
@@ -94,7 +94,7 @@ void Preconditioner::find_positions()
       scene.rows(3, [this](int i, double *out) { std::copy_n((*places)[i], 3, out); });
   x.resize(3 * (size_t) n + 3);
   if (cloud)
-    scene.to_cloud(rows.data(), x.data(), 3);
+    scene.cloud.to_all(rows.data(), x.data(), 3);
   else
     x.swap(rows);
 }
@@ -116,7 +116,7 @@ void Preconditioner::group_by_molecule()
 {
   std::map<int64_t, std::vector<int>> clumps;
   for (int i = 0; i < n && atom->molecule; i++) {
-    const int64_t molecule = cloud ? scene.cloud_molecules()[i] : scene.molecule(i);
+    const int64_t molecule = cloud ? scene.cloud.molecules()[i] : scene.molecule(i);
     if (molecule != 0 && spheres().a[i] > 0.0) clumps[molecule].push_back(i);
   }
   for (const auto &clump : clumps) {
@@ -185,13 +185,13 @@ sd_status Preconditioner::apply(void *ctx, const double *r, double *z)
     p->in.resize(width * p->n + 1);
     p->out.resize(width * p->n + 1);
     if (p->cloud)
-      p->scene.to_cloud(r, p->in.data(), width);
+      p->scene.cloud.to_all(r, p->in.data(), width);
     else
       std::copy_n(r, own, p->in.begin());
     const sd_status status =
         sd_preconditioner_apply(&p->made, p->spheres().w, p->in.data(), p->out.data());
     if (p->cloud)
-      p->scene.from_cloud(p->out.data(), z, width);
+      p->scene.cloud.to_own(p->out.data(), z, width);
     else
       std::copy_n(p->out.begin(), own, z);
     return status;

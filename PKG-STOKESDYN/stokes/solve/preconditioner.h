@@ -60,7 +60,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   const sd_precondition_kind *suited() const;
   /* so few spheres that the inverse of the whole cloud's matrix is made, one block? */
   bool few() const;
-  sd_spheres spheres() const { return cloud ? scene.cloud() : scene.local(); }
+  sd_spheres spheres() const { return cloud ? scene.cloud.spheres() : scene.local(); }
   void refresh_places();
   void find_positions();
   void group();
