@@ -12,7 +12,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
-#include <utility>
 
 using namespace LAMMPS_NS;
 

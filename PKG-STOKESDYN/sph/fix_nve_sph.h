@@ -6,8 +6,6 @@
 #include "end_of_run.h"
 #include "sph.h"
 
-#include <cstdint>
-
 namespace StokesDyn {
 
 class FixNveSph : public SphFix {

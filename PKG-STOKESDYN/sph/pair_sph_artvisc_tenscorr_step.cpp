@@ -7,7 +7,6 @@
 #include "fix_sph_shift.h"
 #include "fix_wall_sph.h"
 #include "keywords.h"
-#include "sd_sph_order.h"
 #include "sd_sph_probe.h"
 #include "sd_sph_step.h"
 

@@ -27,7 +27,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace StokesDyn;

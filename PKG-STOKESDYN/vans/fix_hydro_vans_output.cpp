@@ -1,6 +1,5 @@
 #include "fix_hydro_vans.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 

@@ -5,9 +5,6 @@
 #include "comm.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <sstream>
 
 using namespace LAMMPS_NS;
 

@@ -6,26 +6,26 @@
 
 #include <math.h>
 
-static double volume(const sd_sph_particles *p, int i)
+static double filling_volume(const sd_sph_particles *p, int i)
 {
   return fabs(p->x4[4 * (size_t) i + 3]);
 }
 
-static double distance(const sd_sph_two *two)
+static double filling_distance(const sd_sph_two *two)
 {
   return sqrt(two->r2) * two->pair->inv_h;
 }
 
-static double weight(const sd_sph_model *model, const sd_sph_two *two)
+static double filling_weight(const sd_sph_model *model, const sd_sph_two *two)
 {
-  return two->pair->weight * sd_sph_K(model->kernel, distance(two));
+  return two->pair->weight * sd_sph_K(model->kernel, filling_distance(two));
 }
 
 static void add_surroundings(const sd_sph_model *model, const sd_sph_particles *p, const sd_sph_two *two,
                              double *sums)
 {
-  const double g = two->pair->grad * sd_sph_G(model->kernel, distance(two)), W = weight(model, two);
-  const double Vi = volume(p, two->i), Vj = volume(p, two->j);
+  const double g = two->pair->grad * sd_sph_G(model->kernel, filling_distance(two)), W = filling_weight(model, two);
+  const double Vi = filling_volume(p, two->i), Vj = filling_volume(p, two->j);
   double *of_i = sums + 4 * (size_t) two->i, *of_j = sums + 4 * (size_t) two->j;
   for (int c = 0; c < 3; c++) {
     of_i[c] += Vj * g * two->d[c];
@@ -45,7 +45,7 @@ double sd_sph_filled(const sd_sph_model *model, const sd_sph_particles *p, int i
                      const double M[6])
 {
   const sd_sph_coefficients *own = sd_sph_of_pair(model, p, i, i);
-  const double filled = sums[3] + volume(p, i) * own->weight * sd_sph_K(model->kernel, 0.0);
+  const double filled = sums[3] + filling_volume(p, i) * own->weight * sd_sph_K(model->kernel, 0.0);
   const double mean = (M[0] + M[1] + (model->dimension == 3 ? M[2] : 0.0)) / model->dimension;
   if (sqrt(sd_dot(sums, sums)) > 0.2 * filled * own->inv_h) return 0.0;
   return sd_sph_least_eigenvalue(model->dimension, M) < 0.7 * mean ? 0.0 : filled;
@@ -65,7 +65,7 @@ static void add_toward(const sd_sph_model *model, const sd_sph_particles *p, con
   double sign;
   const int fluid = before_wall(p, two, &sign);
   if (fluid < 0) return;
-  const double W = sign * weight(model, two);
+  const double W = sign * filling_weight(model, two);
   for (int c = 0; c < 3; c++) rows[4 * (size_t) fluid + c] += W * two->d[c];
 }
 
@@ -94,6 +94,6 @@ void sd_sph_reach_of_walls(const sd_sph_model *model, const sd_sph_list *list, c
 
 int sd_sph_sees_past(const sd_sph_model *model, const sd_sph_particles *p, int i, double reach)
 {
-  const double spacing = pow(volume(p, i), 1.0 / model->dimension);
+  const double spacing = pow(filling_volume(p, i), 1.0 / model->dimension);
   return reach + 1.5 * spacing < sd_sph_of_pair(model, p, i, i)->support * (1.0 - 1e-9);
 }

@@ -114,7 +114,7 @@ double sd_sph_surface_curvature(const sd_sph_surface *s, const double *A, double
 
 // --- sums, walls, normals --------------------------------------------------------------------------
 
-static int is_wall(const sd_sph_film *f, int i)
+static int film_is_wall(const sd_sph_film *f, int i)
 {
   return f->wall && f->wall[i];
 }
@@ -131,14 +131,14 @@ void sd_sph_film_sums(const sd_sph_film *f, const sd_sph_film_rows *rows)
   loops_of_films()->sums(f, rows->sums);
   const double W0 = sd_sph_W(f->surface->kernel, f->surface->dimension, 0.0, f->surface->h);
   for (int i = 0; i < f->list->n; i++)
-    rows->sums[8 * (size_t) i + (is_wall(f, i) ? 4 : 0)] += W0 * f->x4[4 * (size_t) i + 3];
+    rows->sums[8 * (size_t) i + (film_is_wall(f, i) ? 4 : 0)] += W0 * f->x4[4 * (size_t) i + 3];
 }
 
 void sd_sph_film_wetness(const sd_sph_film *f, const sd_sph_film_rows *rows, double *wet)
 {
   for (int i = 0; i < f->list->n; i++) {
     const double S = rows->sums[8 * (size_t) i], Sw = rows->sums[8 * (size_t) i + 4];
-    wet[i] = is_wall(f, i) && Sw <= 0.98 ? fmin(1.0, S / fmax(1.0 - Sw, 0.02)) : 0.0;
+    wet[i] = film_is_wall(f, i) && Sw <= 0.98 ? fmin(1.0, S / fmax(1.0 - Sw, 0.02)) : 0.0;
   }
 }
 
@@ -194,7 +194,7 @@ void sd_sph_film_normals(const sd_sph_film *f, const sd_sph_film_rows *rows)
     memcpy(S_G, of, 4 * sizeof(double));
     memset(n, 0, 4 * sizeof(double));
     if (contact) memset(contact, 0, 8 * sizeof(double));
-    if (is_wall(f, i)) {
+    if (film_is_wall(f, i)) {
       n[3] = -1.0;
       continue;
     }
@@ -331,7 +331,7 @@ void sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const 
 {
   const double factor = 2.0 * (f->surface->dimension + 2) * t->friction;
   for (int i = 0; i < f->list->n; i++) {
-    const double V = is_wall(f, i) ? 0.0 : f->x4[4 * (size_t) i + 3], *G = rows->whole + 4 * (size_t) i + 1,
+    const double V = film_is_wall(f, i) ? 0.0 : f->x4[4 * (size_t) i + 3], *G = rows->whole + 4 * (size_t) i + 1,
                  w = rows->surface[4 * (size_t) i + 3], *rubs = rows->turns + SD_SPH_SKIN_SUMS * (size_t) i + 16;
     for (int d = 0; d < 3; d++) {
       F[3 * (size_t) i + d] = 2.0 * t->sigma * V * k[i] * G[d];
@@ -346,7 +346,7 @@ void sd_sph_dry_walls(const sd_sph_film *f, double sigma, const sd_sph_film_rows
 {
   for (int i = 0; i < f->list->n; i++) {
     const double *of = rows->sums + 8 * (size_t) i, *G = rows->whole + 4 * (size_t) i + 1;
-    if (is_wall(f, i) || !(of[4] > 0.0)) continue;
+    if (film_is_wall(f, i) || !(of[4] > 0.0)) continue;
     const double push = 2.0 * f->x4[4 * (size_t) i + 3] * fmax(0.0, fmin(P[i], sigma * k[i]));
     for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] += push * (of[1 + d] + of[5 + d] - G[d]);
   }

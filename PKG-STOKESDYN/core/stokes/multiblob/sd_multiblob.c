@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sd_body_shape.h"
 #include "sd_constants.h"
 #include "sd_linear.h"
 #include "sd_multiblob_half.h"
 #include "sd_shell.h"
+#include "sd_wall.h"
 
 int sd_multiblob_has(int n)
 {
