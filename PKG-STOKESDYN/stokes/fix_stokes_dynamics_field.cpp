@@ -18,6 +18,8 @@ using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 static const double MOST_POINTS = 2147483647.0 / 3.0;
+/* Squares of distances must be numbers. */
+static const double FARTHEST = 1e150;
 
 FixStokesDynamicsField::FixStokesDynamicsField(LAMMPS *lmp, int narg, char **arg) :
     RowsFix(lmp, narg, arg)
@@ -34,14 +36,15 @@ FixStokesDynamicsField::FixStokesDynamicsField(LAMMPS *lmp, int narg, char **arg
     all *= points[d];
   }
   in.require(all < MOST_POINTS, "a grid of " + text(all) + " points must have fewer than 7e8");
-  in.parse({{"lo", [&] {
-               for (double &x : lo) x = in.number();
-               has_lo = true;
-             }},
-            {"hi", [&] {
-               for (double &x : hi) x = in.number();
-               has_hi = true;
-             }}});
+  const auto corner = [&](double x[3], bool &given) {
+    for (int d = 0; d < 3; d++) {
+      x[d] = in.number();
+      in.require(fabs(x[d]) < FARTHEST, "keywords lo and hi: '" + text(x[d]) +
+                                            "' is too far away, the limit is " + text(FARTHEST));
+    }
+    given = true;
+  };
+  in.parse({{"lo", [&] { corner(lo, has_lo); }}, {"hi", [&] { corner(hi, has_hi); }}});
   for (int d = 0; d < 3 && has_lo && has_hi; d++)
     in.require(points[d] == 1 ? hi[d] >= lo[d] : hi[d] > lo[d],
                "keyword hi: '" + text(hi[d]) + "' must be above lo, " + text(lo[d]));

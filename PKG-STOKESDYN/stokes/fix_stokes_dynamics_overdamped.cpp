@@ -127,7 +127,7 @@ void FixStokesDynamicsOverdamped::look_at_neighbours()
   const Hydrodynamics &hydro = hydrodynamics();
   neighbourhood.look(voice, stokes_neighbours,
                      OVERDAMPED | fact(NOISE, noise.on()) | fact(ADAPTING, adapt.every > 0) |
-                         fact(hydro.rotation() ? TURNING : UPRIGHT, true) |
+                         fact(hydro.rotation() ? TURNING : UPRIGHT, true) | fact(MIDWAY, scheme == MIDPOINT) |
                          fact(RESTING, hydro.ambient.settings.rests()),
                      [this](int i) {
                        if (!(atom->mask[i] & groupbit)) return 0u;

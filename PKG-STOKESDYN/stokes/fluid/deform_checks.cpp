@@ -20,6 +20,8 @@ void check_deform(const Voice &voice, bool inertia, bool moving, bool clumps)
   Fix *deform = deform_of(voice.lmp);
   if (!deform) return;
   const Voice name = voice.of(name_of(deform));
+  if (moving && plain_style(deform->style) != "deform")    // such as deform/pressure
+    name.fail("its rates are not known to the pair style: use fix deform, or fluid_velocity 0 0 0");
   const int remap = DeformSettings::remap(deform);
   const bool x = remap == Domain::X_REMAP, v = remap == Domain::V_REMAP;
   if (x && moving)

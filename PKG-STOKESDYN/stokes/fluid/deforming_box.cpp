@@ -120,10 +120,6 @@ BoxMotion motion_of_box(const Voice &voice, double later)
   for (int d = 0; d < 6; d++) {
     edge[d] = {d < 3 || domain->triclinic ? domain->h[d] : 0.0, 0.0};
     if (set[d].style == DeformSettings::NONE || set[d].style == DeformSettings::VOLUME) continue;
-    if (set[d].style < DeformSettings::NONE || set[d].style > DeformSettings::VARIABLE)
-      voice.fail("fix " + std::string(deform->id) + " of style " + deform->style +
-                 " changes the box at a rate that the pair style does not know: use fix deform, or "
-                 "fluid_velocity 0 0 0");
     // by what length an erate is one: its own, or for a tilt that of the edge that it leans over
     const auto &of = set[d < 3 ? d : d == 5 ? 1 : 2];
     const double length = of.hi_start - of.lo_start;

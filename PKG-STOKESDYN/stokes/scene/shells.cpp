@@ -56,6 +56,17 @@ void Shells::warn_of_alike(double largest) const
              "up to 2 % at a ratio of 2, 5 % at 10, spins by up to 25 %");
 }
 
+/* In a run spheres keep their points, though smaller ones may come and radii may change. */
+void Shells::warn_of_newcomers(double smallest, double largest, const Epoch &run)
+{
+  if (settings.alike() || !above(unlike() ? classes.smallest : largest, LARGER[0].from * smallest) ||
+      !outgrown.first_in(run))
+    return;
+  voice.warn("keyword multiblob: radii have come to be from " + text(smallest) + " to " + text(largest) +
+             " since the run began: larger spheres get more points when the next run begins, and until then "
+             "small ones feel the few points of a large one beside them: begin another run");
+}
+
 bool Shells::choose(double smallest, double largest, const Epoch &run)
 {
   const bool first = chosen.first_in(run) || models.empty();
@@ -68,6 +79,8 @@ bool Shells::choose(double smallest, double largest, const Epoch &run)
       if (settings.alike()) warn_of_alike(largest);
       classes.unlike = !settings.alike();
     }
+  } else if (smallest > 0.0) {
+    warn_of_newcomers(smallest, largest, run);
   }
   if (unlike() && settings.most == 642 && above(largest, LARGEST * classes.smallest))
     voice.fail("keyword multiblob: radii from " + text(classes.smallest) + " to " + text(largest) +

@@ -113,7 +113,7 @@ class Shells : protected LAMMPS_NS::Pointers {
 
  private:
   const Voice voice;
-  Stamp chosen;
+  Stamp chosen, outgrown;
   std::vector<sd_multiblob> models;
   std::vector<std::unique_ptr<Owned<sd_multiblob_shape, sd_multiblob_shape_free>>> lone;
   std::vector<sd_faces_pattern> patterns;
@@ -137,6 +137,7 @@ class Shells : protected LAMMPS_NS::Pointers {
 
   void add_model(int n, bool half);
   void warn_of_alike(double largest) const;
+  void warn_of_newcomers(double smallest, double largest, const Epoch &run);
   void find(int n, const double *a, Places &places) const;
   static const double *free_turn();
   sd_multiblob_mask mask_of_free(size_t k) const { return sd_multiblob_whole(&models[of_rows.kind[k]]); }

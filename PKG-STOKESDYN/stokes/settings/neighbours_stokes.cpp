@@ -11,6 +11,7 @@
 #include "group.h"
 #include "output.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "pair.h"
 
 #include "sd_linear.h"
@@ -136,6 +137,11 @@ static bool stands_before_drag(const Guest &guest, std::string &)
   return !stands_behind(guest, "stokes_dynamics");
 }
 
+static bool stands_before_motion(const Guest &guest, std::string &)
+{
+  return !stands_behind(guest, "stokes_dynamics/overdamped");
+}
+
 static bool has_one_atom(const Guest &guest, std::string &)
 {
   return guest.lmp->group->count(guest.fix->igroup) == 1;
@@ -148,6 +154,16 @@ static bool is_asked_for(const Guest &guest, std::string &)
   if (strcmp(guest.compute->id, "thermo_press") != 0) return true;
   return guest.compute->invoked_vector >= 0 ||
       (guest.compute->invoked_scalar >= 0 && Compat::prints_custom_lines(guest.lmp));
+}
+
+/* neigh_modify include: of those that it leaves out LAMMPS does not set the forces to 0 in a step */
+static bool leaves_out(const Guest &guest, std::string &says)
+{
+  const int group = guest.lmp->neighbor->includegroup;
+  const int bit = guest.lmp->group->bitmask[group], *mask = guest.lmp->atom->mask;
+  const tagint first = first_atom(guest.lmp, [&](int i) { return guest.ours(i) && !(mask[i] & bit); });
+  says = std::string("include ") + guest.lmp->group->names[group] + ", which leaves out atom " + std::to_string(first);
+  return group && first;
 }
 
 /* Of atom styles that have shapes: compute property/atom tells them. */
@@ -292,6 +308,13 @@ const std::vector<Neighbour> stokes_neighbours = {
     {N::FIX, "setforce freeze planeforce lineforce aveforce", APPLIED, N::WARNING,
      "stands before fix stokes_dynamics in the input, whose drag then moves what it holds: define it "
      "behind", stands_before_drag},
+    {N::FIX, "planeforce lineforce", OVERDAMPED, N::WARNING,
+     "takes away forces across its plane or line, and without inertia spheres leave it all the same, since "
+     "they move with the fluid: hold them there by springs (fix spring/self K z for planes of constant z)",
+     nullptr, FREE},
+    {N::FIX, "wall/reflect*", OVERDAMPED | MIDWAY, N::ERROR,
+     "stands before fix stokes_dynamics/overdamped in the input, whose step it then does not see, so that "
+     "spheres stay behind its wall until the next one: define it behind", stands_before_motion},
     {N::FIX, "addtorque", TURNING, N::WARNING,
      "pushes the atoms of its group, which turns the group and not the spheres, and does nothing "
      "to a single sphere: a torque on spheres is the keyword torque of fix "
@@ -350,12 +373,17 @@ const std::vector<Neighbour> stokes_neighbours = {
      "gives atom {} a shape that is not that of its sphere, and the fluid sees the sphere "
      "(diameter) only: fill an ellipsoid with the spheres of a rigid clump", is_no_sphere},
 
+    // who is there
+    {N::COMMAND, "neigh_modify", 0, N::ERROR,
+     "has {}: its forces of all steps add up, as LAMMPS clears those of the group alone: name a group with all "
+     "spheres that take part, or take it out", leaves_out},
+
     // weights and stresses
     {N::FIX, "gravity", 0, N::WARNING,
      "pulls on the mass of each sphere, and in the clump of molecule {} spheres overlap, so that "
      "what they share weighs twice: lower their density until the masses add up to that of the "
      "clump, or give it its weight by fix addforce", pulls_on_overlaps},
-    {N::COMPUTE, "pressure*", 0, N::WARNING,
+    {N::COMPUTE, "pressure* stress/* centroid/stress/*", 0, N::WARNING,
      "knows nothing of the forces between spheres and fluid, which have no virial: the stress of "
      "the suspension is compute stokes_dynamics/stress", is_asked_for},
     {N::PAIR, "hybrid/scaled*", 0, N::ERROR,

@@ -19,6 +19,7 @@ enum StokesFact : unsigned {
   RESTING = 1 << 5,       // the fluid rests
   UPRIGHT = 1 << 6,       // spheres do not turn
   APPLIED = 1 << 7,       // with fix stokes_dynamics
+  MIDWAY = 1 << 8,        // with scheme midpoint
 };
 
 inline unsigned fact(StokesFact which, bool holds) { return holds ? (unsigned) which : 0u; }

@@ -316,6 +316,7 @@ def test_points_of_an_open_cloud_between_two_solves(tmp_path):
 
 BAD = {"FILE: 'flow.vti' must have a": "1 flow.vti 3 3 3", "N: '0' must be >= 1": "0 f.*.vti 3 3 3",
        "ny": "1 f.*.vti 3 0 3", "keyword hi: '0' must be above lo, 1": "1 f.*.vti 3 3 3 lo 1 1 1 hi 0 2 2",
+       "keywords lo and hi: '1e+308' is too far away": "1 f.*.vti 3 3 3 hi 1 1 1e308",
        "must have fewer than 7e8": "1 f.*.vti 1000 1000 1000",
        "unknown keyword": "1 f.*.vti 3 3 3 above 1", "could not be written": "1 nowhere/f.*.vti 3 3 3",
        "leaves no room": "1 f.*.vti 3 3 3 lo 900 0 0"}

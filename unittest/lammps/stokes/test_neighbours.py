@@ -11,6 +11,7 @@ from test_loading import lammps_source
 
 OVERDAMPED = "fix move ours stokes_dynamics/overdamped"
 NOISY = f"{OVERDAMPED} temperature 1 4711"
+HALFWAY = f"{OVERDAMPED} scheme midpoint"
 INERTIA = "fix drag ours stokes_dynamics\nfix move ours nve/sphere"
 WORDS = "cut_off_distance inf visc 1"
 TURN = f"{WORDS} rotation yes"
@@ -54,6 +55,12 @@ def prepared(before, move=OVERDAMPED, **more):
     return lambda ours: scene(before=before.replace("GROUP", "ours" if ours else "others"), **more) + move.splitlines()
 
 
+def listed(move):
+    """The commands where only the others have neighbours, or only ours."""
+    name = "atom_modify first {0}\nneigh_modify include {0}".format
+    return lambda ours: scene() + [name("others" if ours else "ours"), *move.splitlines()]
+
+
 # styles that the LAMMPS of the set-up lacks, by a plugin (styles_of_today.cpp)
 STYLES_OF_TODAY = os.path.join(os.environ["LAMMPS_PLUGIN_PATH"], "wrong", "stylesoftoday.so")
 TODAY = f"plugin load {STYLES_OF_TODAY}"
@@ -69,6 +76,7 @@ GRAN = "PAIR gran/hooke gran/hooke/history gran/hertz/history"
 LANGEVIN = "FIX viscous langevin*"
 TURNLESS = "FIX nve nve/limit nvt npt nph"
 HOLDING = "FIX setforce freeze planeforce lineforce aveforce"
+PRESSURE = "COMPUTE pressure* stress/* centroid/stress/*"
 VANS = "hydro/vans 1 mesh 10 1 -9 fluid 1 1 gravity 0.1 0 -1 phi_max 0.6 area 100"
 BONDS = "\n".join(["bond_style harmonic", "bond_coeff 1 1 2.5"] + [f"create_bonds single/bond 1 {both}"
                                                                   for both in ("1 2", "3 4")])
@@ -120,6 +128,13 @@ CASES = [
         "fix b of style nve/asphere turns spheres by"),
     ("FIX setforce freeze", "OVERDAMPED", fixed("fix b GROUP setforce 0 0 0"),
      "fix b of style setforce sets forces"),
+    ("FIX planeforce lineforce", "OVERDAMPED", fixed("fix b GROUP planeforce 0 0 1"),
+     "fix b of style planeforce takes away forces"),
+    ("FIX wall/reflect*", "OVERDAMPED | MIDWAY", fixed("fix b GROUP wall/reflect zlo -8", HALFWAY),
+     "fix b of style wall/reflect stands before fix stokes_dynamics/overdamped"),
+    ("COMMAND neigh_modify", "0", listed(OVERDAMPED),
+     "neigh_modify has include others, which leaves out atom 1: its forces of all steps add up"),
+    ("COMMAND neigh_modify", "0", listed(INERTIA), "neigh_modify has include others, which leaves out atom 1"),
     ("FIX addtorque", "TURNING", lambda ours: fixed("group one id %d\nfix b one addtorque 0 0 1" % (1 if ours else 4),
                                                     words=TURN)(ours),
      "fix b of style addtorque pushes the atoms of its group"),
@@ -171,11 +186,12 @@ ANYWHERE = [
      "fix b of style deform counts its rate"),
     ("FIX deform*", "RESTING", fixed("fix b GROUP deform 1 xy erate 0.1 remap v", boundary="p p p"),
      "fix b of style deform deforms the box with remap v"),
-    ("COMPUTE pressure*", "0", fixed("compute P all pressure NULL pair"),
+    (PRESSURE, "0", fixed("compute P all pressure NULL pair"),
      "compute P of style pressure knows nothing of the forces"),
-    ("COMPUTE pressure*", "0", fixed("thermo_style custom step pxx"),
+    (PRESSURE, "0", fixed("compute S all stress/atom NULL"), "compute S of style stress/atom knows nothing"),
+    (PRESSURE, "0", fixed("thermo_style custom step pxx"),
      "compute thermo_press of style pressure knows nothing of the forces"),
-    ("COMPUTE pressure*", "0", fixed("thermo_style custom step press", INERTIA),
+    (PRESSURE, "0", fixed("thermo_style custom step press", INERTIA),
      "compute thermo_press of style pressure knows nothing of the forces"),
 ]
 
@@ -251,6 +267,8 @@ FINE = {
     "forces set behind the fix that adds the drag": scene() + INERTIA.splitlines() + ["fix b ours setforce 0 0 0"],
     "forces set where the pair style adds the drag": scene(f"{WORDS} add_force yes")
     + ["fix b ours setforce 0 0 0", "fix move ours nve/sphere"],
+    "a wall that sees the step of midpoint": scene() + [HALFWAY, "fix b ours wall/reflect zlo -8"],
+    "a wall before a step that it sees": scene() + ["fix b ours wall/reflect zlo -8", OVERDAMPED],
     "nve where nobody turns": scene() + ["fix drag ours stokes_dynamics", "fix move ours nve"],
     "rigid without langevin": scene() + ["fix drag ours stokes_dynamics", "fix b ours rigid single"],
     "spins that the fluid does not damp": scene(before=TODAY) + ["fix b ours viscous/sphere 1", *INERTIA.splitlines()],

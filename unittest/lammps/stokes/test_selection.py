@@ -77,6 +77,17 @@ def test_spheres_outside_may_have_any_radius(simulation):
 
 
 @pytest.mark.parametrize("mode", MODES)
+def test_types_that_a_hybrid_gives_to_another_style_feel_the_fluid_all_the_same(simulation, tmp_path, mode):
+    words = f"{MODES[mode]} {EXACT}"
+    hybrid = [f"pair_style hybrid stokes_dynamics {words} zero 3", "set atom 1*3 type 2",
+              "pair_coeff * * stokes_dynamics", "pair_coeff 2 2 zero"]
+    lines = input_lines(row_of_five(), hybrid, str(tmp_path / "two.data"), comm="comm_modify cutoff 12")
+    lines = [f"{line} extra/atom/types 1" if line.startswith("read_data") else line for line in lines]
+    alone = simulation(row_of_five(), words, comm="comm_modify cutoff 12").run().drag
+    assert np.array_equal(simulation().commands(lines).run().drag, alone)
+
+
+@pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("algorithm", [1, 2])
 def test_nobody_selected_is_no_error(simulation, mode, algorithm):
     sim = simulation(row_of_five(), f"{MODES[mode]} visc {ETA} algorithm {algorithm} group nobody",

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import model
-from system import Spheres, dump_lines, from_restart, input_lines, lmp, read_dump
+from system import LammpsError, Spheres, dump_lines, from_restart, input_lines, lmp, read_dump
+from test_loading import lammps_source
 
 P6 = 6 * np.pi
 FIX = "fix move all stokes_dynamics/overdamped"
@@ -202,6 +203,19 @@ def test_what_a_box_that_moves_does_not_go_with_is_named(simulation, fluid, moti
                      before_pair="variable ux atom 0.1*y")
     with pytest.raises(Exception, match=message):
         sim.commands(motion).commands(line).run(1)
+
+
+@pytest.mark.nothing_to_test_if(lammps_source(), "LAMMPS of 2021 has no fix deform/pressure")
+def test_a_box_of_whose_motion_only_its_fix_knows_is_named(simulation):
+    def sheared(fluid):
+        sim = simulation(cloud(), f"cut_off_distance inf visc 1 fluid_velocity {fluid}", fix=False, box=BOX,
+                         tilt=(0.0, 0.0, 0.0), boundary="p p p", dt=0.01)
+        return sim.commands([FIX, "fix d all deform/pressure 1 xy erate 0.1 remap none"])
+
+    sheared("0 0 0").run(1)
+    with pytest.raises(LammpsError, match="Pair style stokes_dynamics: fix d of style deform/pressure: its rates are "
+                                          "not known to the pair style: use fix deform, or fluid_velocity 0 0 0"):
+        sheared("box").run(1)
 
 
 @pytest.mark.parametrize("rigid", ["rigid/small", "rigid"])

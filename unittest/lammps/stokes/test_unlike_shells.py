@@ -182,6 +182,21 @@ def test_who_has_which_shell_is_kept(tmp_path):
     assert re.findall(r"Ewald sums of (\d+)", lmp(tmp_path, from_restart(other) + ["run 1"]).log) == ["54"]
 
 
+@pytest.mark.parametrize("radii, change, told", [
+    ((1, 1), "fix change all deposit 1 1 1 77 region there units box", "radii have come to be from 0.5 to 1 since"),
+    ((1, 1), "fix change some adapt 1 atom diameter v_d", "radii have come to be from 1 to 1.6 since"),
+    ((1, 2), "fix change some adapt 1 atom diameter v_d", None)], ids=["small one", "growth", "growth of points"])
+def test_radii_of_a_run_that_would_have_other_points_are_warned_of(tmp_path, radii, change, told):
+    """The deposited sphere has LAMMPS's radius of 0.5. Among unlike radii one that grows gets its points at once."""
+    lines = input_lines(Spheres(apart(radii, 20.0), radii), "cut_off_distance inf visc 1 multiblob 12",
+                        os.path.join(str(tmp_path), "data"), fix=False,
+                        comm="group some id 1\nvariable d equal 2+0.6*step\nregion there block 8 9 4 5 -9 -8")
+    lines = [line.replace("hybrid sphere bond", "hybrid sphere 1 bond") for line in lines]
+    log = " ".join(lmp(tmp_path, lines + [MOVE, change, "run 2 post no"]).log.split())
+    assert log.count("radii have come to be") == (told is not None)
+    assert told is None or f"WARNING: Pair style stokes_dynamics: keyword multiblob: {told}" in log
+
+
 def test_small_shells_of_42_points_are_half_ones_after_a_restart_too(tmp_path):
     lines = [line.replace("multiblob 12", "multiblob 42")
              for line in script(tmp_path, np.array([(1, 1, 1), (3, 3, 3.0)]), (1.0, 0.5))]
