@@ -178,6 +178,7 @@ void BodyScene::tie_films(Films films)
   if (!lubrication.settings.on) return;
   if (films != STANDING_FILMS) lubrication.place(scene, &ambient, films == NOISY_FILMS);
   tie.L = lubrication.matrix();
+  tie.above = lubrication.those_above();
   bodies.tie = &tie;
 }
 

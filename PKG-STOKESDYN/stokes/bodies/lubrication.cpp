@@ -60,6 +60,7 @@ void Lubrication::surround(const Scene &where)
     voice.fail_one("keyword lubrication: the largest radius, " + text(where.largest()) +
                    ", reaches more than 1000 images of each sphere and 1e7 in all; is it in other units?");
   halo.extend(lattice.h, x, {&a, &w});
+  above = halo.above();
   drift.assign(where.drift_of_images() ? 3 * (size_t) halo.count() + 3 : 0, 0.0);
   if (where.drift_of_images()) halo.place(where.drift_of_images(), nullptr, drift.data());
 }

@@ -40,6 +40,8 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   void place(Scene &scene, const Ambient *fluid, bool noisy = false);
   /* Since then */
   sd_lubrication *matrix() { return &near; }
+  /* [copies] as sd_tied.h has it */
+  const double *those_above() const { return above.data(); }
   /* out [6 n]: forces and torques on the spheres that move with v, by rows */
   void forces(const double *v, double *out);
 
@@ -57,9 +59,9 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   sd_films films = {};
   std::vector<double> u;
   std::vector<int> points;
-  /* rows, then copies; velocities of the copies beyond those of their spheres */
+  /* rows, then copies; velocities of the copies beyond those of their spheres; which are above */
   Halo halo;
-  std::vector<double> x, a, w, drift;
+  std::vector<double> x, a, w, drift, above;
 
   void surround(const Scene &where);
   void add_wall(const Scene &where, const sd_wall &wall);

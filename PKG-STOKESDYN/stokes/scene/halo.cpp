@@ -232,6 +232,20 @@ void Halo::place(const double h[6], const double *x, double *out) const
   post.carry(outbox.data(), out, 3);
 }
 
+std::vector<double> Halo::above() const
+{
+  std::vector<double> out(copies + 1);
+  outbox.resize(sphere.size() + 1);
+  size_t k = 0;
+  for (const Post::Partner &p : post.partners)
+    for (int row = 0; row < p.out; row++, k++) {
+      const int *moved = &edges[3 * k];
+      outbox[k] = goes(ABOVE, post.me, p.rank, moved[0], moved[1], moved[2]);
+    }
+  post.carry(outbox.data(), out.data(), 1);
+  return out;
+}
+
 void Halo::extend(const double h[6], std::vector<double> &x,
                   std::initializer_list<std::vector<double> *> columns)
 {

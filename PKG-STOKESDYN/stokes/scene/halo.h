@@ -55,6 +55,9 @@ class Halo {
   void extend(const double h[6], std::vector<double> &x,
               std::initializer_list<std::vector<double> *> columns);
 
+  /* Of the copies, 1: it would be there as one ABOVE, 0: as one of OTHERS alone */
+  std::vector<double> above() const;
+
   /* The other ranks as the core asks them, of these rows and copies; as long as this halo stands here */
   sd_world ranks() const;
 

@@ -70,7 +70,7 @@ static sd_status tie_apply(void *ctx, const double *p, double *w)
 static sd_status tie_precondition(void *ctx, const double *r, double *z)
 {
   const films *s = ctx;
-  return sd_tie_precondition(s->A, r, s->room.spheres, z);
+  return sd_tie_precondition(s->A, r, z);
 }
 
 /* What V lacks after too many products is left to the loop. */
@@ -137,8 +137,8 @@ void sd_tie_share(const sd_bodies *A, double *l)
 void sd_tie_free(sd_tie *t)
 {
   sd_block_cholesky_free(&t->factor);
-  void *const arrays[] = {t->spring, t->stiff,       t->scale,  t->copy,   t->all, t->copies,
-                          t->face,   t->faces_there, t->weight, t->shared, t->edge};
+  void *const arrays[] = {t->spring, t->stiff, t->scale, t->other, t->all,    t->face, t->faces_there,
+                          t->weight, t->shared, t->lent, t->away,  t->lend,   t->borrow, t->sent};
   for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) free(arrays[k]);
   *t = (sd_tie){0};
 }

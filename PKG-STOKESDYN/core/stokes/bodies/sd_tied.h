@@ -14,34 +14,52 @@ typedef struct {
   double *bodies, *spheres;
 } sd_tie_room;
 
-/* Zero-initialise, set L, whose rows are the spheres; sd_tie_free in the end. */
+/* A body of another rank: whose, and its number there */
+typedef struct {
+  int rank, body;
+} sd_tie_other;
+
+/* Zero-initialise, set L, whose rows are the spheres, and `above`; sd_tie_free in the end. */
 typedef struct sd_tie {
   sd_lubrication *L;
+  /* [n_all - n of L] of the copies, 1: above this rank, 0: below. Of two ranks with a film across their
+   * border one alone has the other's sphere above it. NULL: those of higher ranks are above */
+  const double *above;
   /* products with L since sd_tie_make */
   long products;
-  /* of the bodies of this rank and of `others`, those of other ranks that are near */
+  /* of the bodies of this rank and of `others` of other ranks (sd_tie_factor.h), in ascending order */
   sd_block_cholesky factor;
+  sd_tie_other *other;
   int others;
   /* does a stiff pair chain bodies together that more than two ranks share? The same on all of them */
   int severed;
   /* [6 (bodies + others)] 1 over the roots of the diagonal of H_0; 0: nobody is near to this body,
    * or this of its velocity is given */
   double *scale;
-  /* [bodies] W of sd_tie_factor.h; [shares] bodies of this rank that others have too, where W is not 1, and
-   * [edges] their spheres */
+  /* [bodies] W of sd_tie_factor.h; [shares] bodies of this rank where it is not 1 */
   double *weight;
-  int *shared, *edge, shares, edges;
-  /* [others] the copy, among the n_all - n of L, that stands for it */
-  int *copy;
+  int *shared, shares;
+  /* [lents] bodies of this rank in factors of others, for one rank after the other, -1: by rounding it is
+   * not at this rank's border; [aways] those at borders that the factor here lacks. [ranks] so many
+   * numbers of the first go to each rank, and so many of `others` come from it, 6 a body; [6 lents] room
+   * for those that go */
+  int *lent, *away, *lend, *borrow, lents, aways;
+  double *sent;
   /* X by pairs of L and those beyond, c; by spheres, X_ii of translations, xx yy zz xy xz yz; what springs
    * see of spheres and do to them [2 9 spheres], [9 others], 6 where rows are spheres */
   double *spring, *stiff, *face, *faces_there;
-  /* scratch: by bodies and others, by copies */
-  double *all, *copies;
-  size_t most_scales, most_weights, most_shared, most_edges, most_copies, most_springs, most_stiff, most_all,
-      most_rows_there, most_faces, most_faces_there;
+  /* scratch: by bodies and others */
+  double *all;
+  size_t most_scales, most_weights, most_shared, most_others, most_lent, most_away, most_lend, most_borrow,
+      most_sent, most_springs, most_stiff, most_all, most_faces, most_faces_there;
 } sd_tie;
 
+/* Do ranks share bodies at their borders? */
+static inline int sd_tie_is_layered(const sd_bodies *A)
+{
+  const sd_world *world = &A->tie->L->world;
+  return world->ranks > 1 && world->refresh && world->tell && world->exchange;
+}
 /* Is there an X? */
 static inline int sd_tie_has_springs(const sd_bodies *A)
 {

@@ -41,15 +41,15 @@ void sd_block_cholesky_forth(const sd_block_cholesky *f, double *x)
 
 void sd_block_cholesky_middle(const sd_block_cholesky *f, double *x)
 {
-  for (long k = f->early; k < f->n; k++) take_in(f, f->order[k], x);
-  kernels_here()->forth(f, f->early, f->n);
-  kernels_here()->back(f, f->early, f->n);
-  for (long k = f->early; k < f->n; k++) give_out(f, f->order[k], x);
+  for (long k = f->early; k < f->factored; k++) take_in(f, f->order[k], x);
+  kernels_here()->forth(f, f->early, f->factored);
+  kernels_here()->back(f, f->early, f->factored);
+  for (long k = f->early; k < f->factored; k++) give_out(f, f->order[k], x);
 }
 
 void sd_block_cholesky_back(const sd_block_cholesky *f, double *x)
 {
   for (long k = f->early; k < f->n; k++) take_in(f, f->order[k], x);
   kernels_here()->back(f, 0, f->early);
-  for (long k = 0; k < f->early; k++) give_out(f, f->order[k], x);
+  for (long p = 0; p < f->n; p++) give_out(f, p, x);
 }

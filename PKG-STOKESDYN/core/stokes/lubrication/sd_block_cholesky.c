@@ -20,8 +20,8 @@ typedef struct {
   int before, after;
   /* where it is in the list of the node that is looked at, if stamp says so */
   int seen, stamp;
-  /* is it put off, and in no queue? */
-  int late;
+  /* is it put off, and in no queue? Then it may be left out. */
+  enum { EARLY, LATE, OUT } when;
   /* the norms of the fill that it has lost */
   float lost;
 } node;
@@ -114,7 +114,7 @@ static void cholesky_give_back(struct sd_elimination *w, int b)
 static void leave_queue(struct sd_elimination *w, int p)
 {
   const node *this = w->node + p;
-  if (this->late) return;
+  if (this->when != EARLY) return;
   if (this->before >= 0)
     w->node[this->before].after = this->after;
   else
@@ -124,7 +124,7 @@ static void leave_queue(struct sd_elimination *w, int p)
 
 static void join_queue(struct sd_elimination *w, int p)
 {
-  if (w->node[p].late) return;
+  if (w->node[p].when != EARLY) return;
   int *first = w->queue + w->node[p].degree;
   w->node[p].before = -1;
   w->node[p].after = *first;
@@ -219,7 +219,7 @@ sd_status sd_block_cholesky_add(sd_block_cholesky *f, int p, int q, const double
 
 void sd_block_cholesky_put_off(sd_block_cholesky *f, int p)
 {
-  f->work->node[p].late = 1;
+  f->work->node[p].when = LATE;
 }
 
 /* --- elimination --- */
@@ -352,20 +352,38 @@ sd_status sd_block_cholesky_factor(sd_block_cholesky *f, double drop)
   for (int p = f->n - 1; p >= 0; p--) {
     for (int d = 0; d < 6; d++) pivot_of(w, p)[(SD_BLOCK_LANES + 1) * d] *= 1.0f + safety;
     join_queue(w, p);
-    f->early += !w->node[p].late;
+    f->early += w->node[p].when == EARLY;
   }
   return eliminate_all(f, 0, f->early, drop);
+}
+
+void sd_block_cholesky_leave_out(sd_block_cholesky *f, int p)
+{
+  struct sd_elimination *w = f->work;
+  const end_of_edge *list = w->end + w->node[p].list;
+  for (int e = 0; e < w->node[p].degree; e++) {
+    node *other = w->node + list[e].node;
+    end_of_edge *back = w->end + other->list;
+    while (back->node != p) back++;
+    *back = w->end[other->list + --other->degree];
+    cholesky_give_back(w, list[e].block);
+  }
+  w->node[p].degree = 0;
+  w->node[p].when = OUT;
 }
 
 sd_status sd_block_cholesky_finish(sd_block_cholesky *f, double drop)
 {
   struct sd_elimination *w = f->work;
+  int out = f->n;
   for (int p = f->n - 1; p >= 0; p--) {
-    if (!w->node[p].late) continue;
-    w->node[p].late = 0;
+    if (w->node[p].when == OUT) f->order[--out] = p;
+    if (w->node[p].when != LATE) continue;
+    w->node[p].when = EARLY;
     join_queue(w, p);
   }
-  return eliminate_all(f, f->early, f->n, drop);
+  f->factored = out;
+  return eliminate_all(f, f->early, f->factored, drop);
 }
 
 static void read_block(const float *A, int turned, double B[36])
@@ -377,6 +395,11 @@ static void read_block(const float *A, int turned, double B[36])
 int sd_block_cholesky_degree(const sd_block_cholesky *f, int p)
 {
   return f->work->node[p].degree;
+}
+
+int sd_block_cholesky_beside(const sd_block_cholesky *f, int p, int k)
+{
+  return f->work->end[f->work->node[p].list + k].node;
 }
 
 void sd_block_cholesky_left(const sd_block_cholesky *f, int p, sd_block_visit *visit, void *ctx)

@@ -24,9 +24,10 @@ enum { SD_BLOCK_LANES = 8 };
 
 /* Zero-initialise; made again with the memory that it has; sd_block_cholesky_free in the end. */
 typedef struct {
-  /* nodes; so many of them are not put off */
-  int n, early;
-  /* [n] nodes in the order of elimination; [n + 1] their columns; by entry of a column: its node */
+  /* nodes; so many of them are not put off; so many, these first, are not left out */
+  int n, early, factored;
+  /* [n] nodes in the order of elimination, then those left out; [factored + 1] their columns; by entry of
+   * a column: its node */
   int *order;
   long *first;
   int *row;
@@ -50,13 +51,18 @@ sd_status sd_block_cholesky_factor(sd_block_cholesky *f, double drop);
  * q of `degree` with which it has a block. B [36] as in sd_block_cholesky_add */
 typedef void sd_block_visit(void *ctx, int p, int q, const double B[36]);
 int sd_block_cholesky_degree(const sd_block_cholesky *f, int p);
+/* The k-th of these q */
+int sd_block_cholesky_beside(const sd_block_cholesky *f, int p, int k);
 void sd_block_cholesky_left(const sd_block_cholesky *f, int p, sd_block_visit *visit, void *ctx);
+/* A node that was put off is not eliminated at all: it and its blocks are no more in the matrix. */
+void sd_block_cholesky_leave_out(sd_block_cholesky *f, int p);
 /* And those that are put off. Status as of sd_block_cholesky_factor */
 sd_status sd_block_cholesky_finish(sd_block_cholesky *f, double drop);
 /* x [6n] becomes P^-1 x */
 void sd_block_cholesky_apply(const sd_block_cholesky *f, double *x);
 /* The same in three parts, P^-1 = back middle forth, in which forth and its transpose back are 1 where
- * nodes are put off, and middle is about these alone. x of them may change on the way. */
+ * nodes are put off, and middle is about those of them that are not left out. x of all of them may change
+ * on the way. */
 void sd_block_cholesky_forth(const sd_block_cholesky *f, double *x);
 void sd_block_cholesky_middle(const sd_block_cholesky *f, double *x);
 void sd_block_cholesky_back(const sd_block_cholesky *f, double *x);

@@ -80,7 +80,7 @@ typedef struct {
   /* spheres of this rank, and with those of other ranks and images */
   int n, n_all;
   /* each pair once: i < j < n, or j >= n: another rank's. A sphere's own images are in the
-   * diagonal. Behind them, for preconditioners, those between two spheres of other ranks that have
+   * diagonal. Behind them, for preconditioners, those between spheres of two other ranks that both have
    * pairs with this one's, i, j >= n */
   long count, beyond;
   int (*pair)[2];

@@ -66,12 +66,30 @@ static void keep_pair(sd_lubrication *L, const sd_lubrication_scene *s, long *co
   L->work->close[(*count)++] = close;
 }
 
+/* Behind all others: of spheres of two other ranks, if both have pairs with this one's; neighbours of `rows` are
+ * known */
+static void keep_beyond(sd_lubrication *L, const sd_lubrication_scene *s, int rows)
+{
+  const struct sd_lubrication_work *w = L->work;
+  const sd_neighbors *near = &w->near.list;
+  double *met = w->neighbours;
+  long last = L->count;
+  memset(met, 0, sizeof(double) * (size_t) s->n_all);
+  for (long k = 0; k < L->count; k++) met[L->pair[k][1]] = 1.0;
+  for (int i = s->n; i < rows; i++)
+    for (long k = near->first[i]; met[i] != 0.0 && k < near->first[i + 1]; k++) {
+      const int j = near->neighbor[k];
+      if (met[j] != 0.0 && w->identity[i].rank != w->identity[j].rank) keep_pair(L, s, &last, i, j, j);
+    }
+  L->beyond = last - L->count;
+}
+
 /* Pairs of a sphere with its own images are there as often as these are, since the other way round
  * is the same force on the same sphere. All others are there once, from the lower row. */
 sd_status sd_lubrication_find_pairs(sd_lubrication *L, const sd_lubrication_scene *s)
 {
   struct sd_lubrication_work *w = L->work;
-  const int beyond = s->world.ranks > 1, rows = beyond ? s->n_all : s->n;
+  const int rows = s->world.ranks > 2 ? s->n_all : s->n;
   sd_status status = identify(L, s);
   if (status == SD_OK) status = sd_near_keep(&w->near, &s->spheres, rows, s->n_all, 2.0 + s->range);
   const sd_neighbors *near = &w->near.list;
@@ -83,15 +101,6 @@ sd_status sd_lubrication_find_pairs(sd_lubrication *L, const sd_lubrication_scen
       const int at = near->neighbor[k], j = row_at(L, at);
       if (j >= i) keep_pair(L, s, &L->count, i, j, at);
     }
-  double *met = w->neighbours;
-  memset(met, 0, sizeof(double) * (size_t) s->n_all);
-  for (long k = 0; k < L->count; k++) met[L->pair[k][1]] = 1.0;
-  long last = L->count;
-  for (int i = s->n; i < rows; i++)
-    for (long k = near->first[i]; met[i] != 0.0 && k < near->first[i + 1]; k++) {
-      const int j = near->neighbor[k];
-      if (met[j] != 0.0) keep_pair(L, s, &last, i, j, j);
-    }
-  L->beyond = last - L->count;
+  keep_beyond(L, s, rows);
   return SD_OK;
 }

@@ -1,5 +1,5 @@
-/* Films on several ranks (sd_tie_factor.h). Each has the factor of its own bodies and shares that of a layer with
- * others; the answer is that of one rank, in as many products with the mobility, on two ranks in as many with the
+/* Films on several ranks (sd_tie_factor.h). Each has the factor of its own bodies and of some at its borders;
+ * the answer is that of one rank, in as many products with the mobility, on two ranks in as many with the
  * films, and on four not in many more. */
 #include "on_ranks.h"
 
@@ -13,13 +13,19 @@ typedef struct {
   double l[6 * N], before[6 * N], v[6 * N];
   int products;
   long within;
+  /* by ranks: bodies of others in its factor, of its own in theirs, of its own not in its own, in several */
+  int others[MOST_RANKS], lents[MOST_RANKS], aways[MOST_RANKS], shares[MOST_RANKS];
 } answer;
+
+/* Who is above: the higher rank, the lower one, or each time the sphere of the odd number */
+typedef enum { HIGHER, LOWER, ODD } up;
 
 typedef struct {
   settling *s;
   answer *found;
   int warm;
   double tolerance;
+  up above;
 } task;
 
 typedef struct {
@@ -45,6 +51,14 @@ static int owner(const settling *s, int i, int ranks)
     for (int d = 0; d < 2; d++) middle[d] += s->near.s.x[3 * k + d] / N;
   const double *x = s->near.s.x + 3 * i;
   return ranks == 1 ? 0 : (x[0] > middle[0]) + (ranks > 2 ? 2 * (x[1] > middle[1]) : 0);
+}
+
+static void say_above(const rank *r, const settling *s, up who, double *above)
+{
+  for (int j = r->n; j < r->n_all; j++) {
+    const int higher = owner(s, r->number[j], r->ranks) > r->me;
+    above[j - r->n] = who == ODD ? r->number[j] % 2 : who == HIGHER ? higher : !higher;
+  }
 }
 
 /* The spheres of others are all ghosts. */
@@ -73,10 +87,12 @@ static void work(rank *r, const void *ctx)
   }
   mobility m = {r, s->packed};
   sd_lubrication L = {0};
-  sd_tie tie = {.L = &L};
+  double above[N];
+  sd_tie tie = {.L = &L, .above = t->above == HIGHER ? NULL : above};
   const sd_lubrication_scene scene = {.functions = s->near.functions, .gap = s->near.gap, .range = s->near.range,
                                       .n = r->n,
                                       .n_all = N, .spheres = {x, a, w}, .world = rank_world(r)};
+  say_above(r, s, t->above, above);
   sd_bodies A = s->A;
   A.lone = A.spheres.n = A.points.n = r->n;
   A.apply = product;
@@ -96,6 +112,10 @@ static void work(rank *r, const void *ctx)
       found->before[to] = before[6 * i + d];
       found->v[to] = v[6 * i + d];
     }
+  found->others[r->me] = tie.others;
+  found->lents[r->me] = tie.lents;
+  found->aways[r->me] = tie.aways;
+  found->shares[r->me] = tie.shares;
   if (r->me == 0) {
     found->products = report.products;
     found->within = tie.products;
@@ -106,7 +126,7 @@ static void work(rank *r, const void *ctx)
 
 static void solve_on(int ranks, settling *s, answer *found, int warm, double tolerance)
 {
-  const task t = {s, found, warm, tolerance};
+  const task t = {s, found, warm, tolerance, HIGHER};
   munmap(on_ranks(ranks, work, &t), sizeof(shared));
 }
 
@@ -125,7 +145,7 @@ static void films_of_ranks_are_those_of_one(void **state)
   /* with stiff pairs, and with none: products with L on two ranks and on four, over those of one */
   static const struct {
     double phi, gap, most[2];
-  } of[] = {{0.1, 1e-6, {1.1, 1.8}}, {0.5, 1e-6, {1.15, 2.0}}, {0.4, 0.1, {1.1, 1.1}}};
+  } of[] = {{0.1, 1e-6, {1.1, 1.8}}, {0.5, 1e-6, {1.15, 2.2}}, {0.4, 0.1, {1.1, 1.1}}};
   answer *found = ranks_memory(sizeof(answer));
   for (int e = 0; e < 3; e++) {
     settling *s = settling_create(N, of[e].phi, of[e].gap);
@@ -165,8 +185,36 @@ static void films_of_ranks_are_those_of_one(void **state)
   munmap(found, sizeof(answer));
 }
 
+/* A border is in the factor of the rank below it alone; where borders meet, all of it is in that of both. */
+static void one_of_two_ranks_factors_their_border(void **state)
+{
+  (void) state;
+  answer *found = ranks_memory(sizeof(answer));
+  settling *s = settling_create(N, 0.3, 1e-3);
+  task t = {s, found, 0, 1e-6, HIGHER};
+  solve_on(1, s, found, 0, 1e-6);
+  const long within = found->within;
+  for (t.above = HIGHER; t.above <= ODD; t.above++) {
+    munmap(on_ranks(2, work, &t), sizeof(shared));
+    print_message("%ld products with L, %ld on one rank; in factors of the other rank %d %d\n", found->within, within,
+                  found->lents[0], found->lents[1]);
+    assert_true(found->within <= within + within / 10 + 1);
+    const int below = t.above == LOWER;
+    for (int p = 0; p < 2; p++) {
+      const int all = t.above == ODD, has = all || p == below;
+      assert_int_equal(found->lents[p], found->others[1 - p]);
+      assert_int_equal(found->others[p] > 0, has);
+      assert_int_equal(found->aways[p], has ? 0 : found->lents[p]);
+      assert_int_equal(found->shares[p] > 0, all);
+    }
+  }
+  settling_free(s);
+  munmap(found, sizeof(answer));
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(films_of_ranks_are_those_of_one)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(films_of_ranks_are_those_of_one),
+                                     cmocka_unit_test(one_of_two_ranks_factors_their_border)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

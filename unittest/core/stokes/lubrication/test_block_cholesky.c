@@ -134,6 +134,38 @@ static void nodes_can_be_put_off(void **state)
   sd_block_cholesky_free(&f);
 }
 
+/* One that is left out is neither in the middle nor changed by it: of S the rows and columns of the others count. */
+static void nodes_can_be_left_out(void **state)
+{
+  (void) state;
+  enum { OUT = 7, LATE = 4 };
+  const int late[LATE] = {2, OUT, 9, 10};
+  sd_block_cholesky f = {0};
+  matrix *A = tangle(10.0);
+  double *left = calloc(SIZE * SIZE, sizeof(double)), x[SIZE], before[SIZE];
+  assert_int_equal(sd_block_cholesky_begin(&f, NODES), SD_OK);
+  for (int k = 0; k < LATE; k++) sd_block_cholesky_put_off(&f, late[k]);
+  add_all(&f, A);
+  assert_int_equal(sd_block_cholesky_factor(&f, 0.0), SD_OK);
+  for (int k = 0; k < LATE; k++) sd_block_cholesky_left(&f, late[k], note_block, left);
+  assert_true(sd_block_cholesky_degree(&f, OUT) > 0);
+  sd_block_cholesky_leave_out(&f, OUT);
+  assert_int_equal(sd_block_cholesky_finish(&f, 0.0), SD_OK);
+  for (int i = 0; i < SIZE; i++) x[i] = cos(i);
+  sd_block_cholesky_forth(&f, x);
+  memcpy(before, x, sizeof(x));
+  sd_block_cholesky_middle(&f, x);
+  for (int k = 0; k < LATE; k++)
+    for (int r = 6 * late[k]; r < 6 * late[k] + 6; r++) {
+      double sum = 0.0;
+      for (int j = 0; j < SIZE; j++) sum += j / 6 == OUT ? 0.0 : left[SIZE * r + j] * x[j];
+      CHECK_NEAR(late[k] == OUT ? x[r] : sum, before[r], 1e-4);
+    }
+  free(A);
+  free(left);
+  sd_block_cholesky_free(&f);
+}
+
 static void what_is_dropped_makes_it_larger(void **state)
 {
   (void) state;
@@ -265,6 +297,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(without_dropping_it_is_exact),
       cmocka_unit_test(nodes_can_be_put_off),
+      cmocka_unit_test(nodes_can_be_left_out),
       cmocka_unit_test(what_is_dropped_makes_it_larger),
       cmocka_unit_test(rounding_fails_no_pivot),
       cmocka_unit_test(a_chain_has_no_fill),
