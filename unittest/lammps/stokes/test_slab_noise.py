@@ -21,7 +21,7 @@ def test_modes_have_the_variance_of_the_mobility(simulation, walls):
     """2 kT dt times the eigenvalue, of all modes together to 1.2 % and of each third of them to 2 %, in 2000
     independent steps so short that nothing moves: three times what 120 000 numbers, or a third of them, scatter."""
     n, steps, dt, box, x = 20, 2000, 1e-14, cell(8, -1, 4.5), scattered(20, 8, 3.5)
-    style = f"cut_off_distance inf visc {ETA!r} relative_tolerance 1e-6 {walls}"
+    style = f"cut_off_distance inf visc {ETA!r} relative_tolerance 1e-4 far_field_tolerance 1e-4 {walls}"
     M = matrix(simulation, x, style, box)
     eigenvalue, mode = np.linalg.eigh(0.5 * (M + M.T))
     assert eigenvalue[0] > 0
@@ -77,7 +77,7 @@ def test_heights_stay_those_of_boltzmann(simulation, walls):
     for sample, expected in ((seen, mean), ((seen - mean) ** 2, spread)):
         each = sample.mean(axis=0)
         sigma = each.std() / np.sqrt(n)
-        assert sigma < 0.06 * np.sqrt(spread) if expected == mean else 0.1 * spread
+        assert sigma < (0.06 * np.sqrt(spread) if expected == mean else 0.15 * spread)
         assert each.mean() == pytest.approx(expected, abs=4 * sigma + 0.01 * expected)
     assert np.mean(products) < 25
     print(f"{walls}: mean {seen.mean():.4f} of {mean:.4f}, square {((seen - mean) ** 2).mean():.4f} of {spread:.4f}, "

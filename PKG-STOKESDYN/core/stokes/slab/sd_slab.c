@@ -45,7 +45,8 @@ void sd_slab_keep_off(const sd_slab_walls *walls, const double x[3], double a, d
 /* --- the choice --- */
 
 /* Heights for which the present splitting stands, if it is not much too tall for them; else
- * those of the spheres with a twentieth to spare, so that it lasts while they move. */
+ * those of the spheres with a twentieth to spare, so that it lasts while they move. Those that
+ * cut a floor are kept off it. */
 static void room_for(const sd_slab_walls *walls, const sd_slab_spheres *spheres, sd_slab *s)
 {
   const double lo = spheres->lo, hi = spheres->hi, smallest = spheres->smallest;
@@ -57,8 +58,8 @@ static void room_for(const sd_slab_walls *walls, const sd_slab_spheres *spheres,
   const double spare = fmax(0.05 * (hi - lo), spheres->sizes.all.largest);
   const int floor_below = walls->kind == SD_SLAB_FLOOR;
   const double lowest = floor_below ? smallest : lo - spare, highest = hi + spare;
-  const int holds = lo >= s->lo && hi <= s->hi && s->ewald.count > 0.0 &&
-      (!floor_below || s->lo == smallest) && s->hi - s->lo <= 1.5 * (highest - lowest);
+  const int holds = (floor_below ? s->lo == smallest : lo >= s->lo) && hi <= s->hi &&
+      s->ewald.count > 0.0 && s->hi - s->lo <= 1.5 * (highest - lowest);
   if (holds) return;
   s->lo = lowest;
   s->hi = fmax(highest, lowest);

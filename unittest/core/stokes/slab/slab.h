@@ -42,12 +42,10 @@ static inline sd_status slab_choose(const sd_slab_walls *walls, const sd_ewald_b
   for (int i = 0; i < n; i++) s.sizes.all.largest = fmax(s.sizes.all.largest, a[i]);
   for (int i = 0; i < n; i++) {
     if (!(a[i] > 0.0)) continue;
-    double at[3];
-    sd_slab_keep_off(walls, x + 3 * i, a[i], at);
     sd_ewald_count(&s.sizes, a[i], 1);
     s.smallest = fmin(s.smallest, a[i]);
-    s.lo = fmin(s.lo, sd_slab_height(walls, at));
-    s.hi = fmax(s.hi, sd_slab_height(walls, at));
+    s.lo = fmin(s.lo, sd_slab_height(walls, x + 3 * i));
+    s.hi = fmax(s.hi, sd_slab_height(walls, x + 3 * i));
   }
   return sd_slab_choose(walls, box, &s, tolerance, out);
 }

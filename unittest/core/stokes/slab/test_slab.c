@@ -415,7 +415,7 @@ static void a_huge_cell_is_open(void **state)
   for (int i = 0; i < 6; i++) CHECK_NEAR(u[i], expected[i] + F[i] / (6.0 * SD_PI), 1e-5);
 }
 
-/* A splitting lasts while spheres move within its heights, and says so when they do not. */
+/* A splitting lasts while spheres move within its heights, or cut the floor, and says so when they do not. */
 static void a_splitting_lasts_until_spheres_leave_it(void **state)
 {
   (void) state;
@@ -427,6 +427,7 @@ static void a_splitting_lasts_until_spheres_leave_it(void **state)
   assert_int_equal(slab_choose(&walls, &box, c.x, c.a, N, 1e-3, &how), SD_OK);
   later = how;
   c.x[5] = how.hi - 0.01;
+  c.x[2] = 0.4 * c.a[0];
   assert_int_equal(slab_choose(&walls, &how.ewald.box, c.x, c.a, N, 1e-3, &later), SD_OK);
   assert_true(sd_slab_same_tables(&how, &later));
   c.x[5] = how.hi + 0.01;
