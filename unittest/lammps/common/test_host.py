@@ -75,3 +75,11 @@ def test_names_are_found_where_a_function_uses_them():
         for ranks in (1, 2):
             inner(ranks)
     assert {"ranks", "inner", "number", "ranks_within"} <= names(outer.__code__)
+
+
+@pytest.mark.parametrize("family, left_out", [("MPICH", 2), ("Open MPI", 0)])
+def test_scenes_that_differ_in_the_core_alone_are_asked_mpich_once(monkeypatch, family, left_out):
+    monkeypatch.setattr(host, "family", lambda: family)
+    first, *others = host.by_open_mpi("abc")
+    assert first == "a" and [other.values for other in others] == [("b",), ("c",)]
+    assert sum(mark.args[0] for other in others for mark in other.marks) == left_out

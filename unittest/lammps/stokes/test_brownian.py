@@ -10,6 +10,7 @@ import pytest
 import model
 from brownian import (A, END, ETA, KT, L_OF_FOUR, MOVE, P6, SHORT, TRIO, UNIT, check_covariance, check_heights,
                       check_pieces, check_ranks, copies, end, in_a_plane, in_clumps, noise, scattered, script, steps_of)
+from host import by_open_mpi
 from system import LammpsError, Spheres, input_lines, lmp
 
 # --- one step ---------------------------------------------------------------------------------------------------------
@@ -345,7 +346,7 @@ WAYS = {"open": ("f f f", scattered, "cut_off_distance inf visc 1.1 rotation yes
         "midpoint": ("p p p", scattered, "cut_off_distance inf visc 1.1 far_field_tolerance 1e-6", MIDPOINT)}
 
 
-@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
+@pytest.mark.parametrize("way", by_open_mpi(WAYS.values(), but=2), ids=WAYS)
 def test_ranks_and_newton_do_not_matter(tmp_path, way):
     check_ranks(tmp_path, way)
 

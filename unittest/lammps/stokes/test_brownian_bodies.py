@@ -9,6 +9,7 @@ import pytest
 
 from brownian import (A, END, ETA, KT, SHORT, TIGHT, UNIT, check_covariance, check_pieces, check_ranks, check_same, end,
                       in_a_plane, noise, script, steps_of)
+from host import by_open_mpi
 from system import Spheres, input_lines, lmp
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "bench"))
@@ -247,7 +248,7 @@ def test_a_step_takes_one_solve_and_a_root(simulation):
     assert solves == 1 + 3 and products <= 12 and error < 0.0034
 
 
-@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
+@pytest.mark.parametrize("way", by_open_mpi(WAYS.values()), ids=WAYS)
 def test_ranks_and_newton_do_not_matter(tmp_path, way):
     check_ranks(tmp_path, way, *CLOSE)
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from brownian import A, BEYOND, ETA, KT, TIGHT, UNIT, check_pieces, check_ranks, noise
+from host import by_open_mpi
 from system import LammpsError, Spheres, dump_lines, input_lines, read_dump
 from test_brownian_bodies import SHARP, close_spheres, in_few_clumps
 from test_sheared_box import edges, up_to_images
@@ -229,8 +230,8 @@ def test_where_noise_has_faded_the_path_is_that_without(simulation, style):
 
 def unlike_spheres():
     """Four small ones around a large one that stands in a face, with films"""
-    x = np.array([(9.0, 17.5, 9.0), (11.55, 18.3, 9.2), (7.0, 15.95, 10.1), (9.2, 17.0, 6.3), (10.6, 19.1, 7.4)])
-    return Spheres(x % 18.0, [2.0, 0.6, 0.6, 0.6, 0.6])
+    to = np.array([(0.0, 0.0, 0.0), (2.55, 0.8, 0.2), (-2.0, -1.55, 1.1), (0.2, -0.5, -2.7), (1.6, 1.6, -1.6)])
+    return Spheres(((9.0, 17.5, 9.0) + 0.83 * to) % 18.0, [1.5, 0.6, 0.6, 0.6, 0.6])
 
 
 DEFORM = "\nchange_box all triclinic\nfix d all deform 1 xy erate 1.7 remap v"
@@ -245,7 +246,7 @@ WAYS = {"shells with films": ("p p p", close_spheres, f"{SHARP} multiblob 12 lub
         "points ab2": ("p p p", close_spheres, f"{SHARP} fluid_velocity box", DEFORM)}
 
 
-@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
+@pytest.mark.parametrize("way", by_open_mpi(WAYS.values()), ids=WAYS)
 def test_ranks_and_newton_do_not_matter(tmp_path, way):
     check_ranks(tmp_path, way, END=BEYOND)
 

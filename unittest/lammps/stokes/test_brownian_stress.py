@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from brownian import ETA, KT, TIGHT, end, in_pieces, script
+from host import by_open_mpi
 from system import LammpsError, Spheres, dump_lines
 from test_brownian_bodies import CROOKED, SHARP, close_spheres, in_few_clumps
 from test_brownian_shear import DEFORM
@@ -235,7 +236,7 @@ WAYS = {"shells with films": ("p p p", close_spheres, f"{SHARP} multiblob 12 lub
 
 
 @pytest.mark.ranks(2)
-@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
+@pytest.mark.parametrize("way", by_open_mpi(WAYS.values()), ids=WAYS)
 def test_stress_of_a_run_in_pieces_is_that_of_the_run_in_one(tmp_path, way):
     make = lambda runs: script(tmp_path, way, ["compute S all stokes_dynamics/stress variance low"] + runs)
     whole, two, again = in_pieces(tmp_path, make, ROWS)

@@ -5,7 +5,7 @@ import os
 import numpy as np
 import pytest
 
-from host import allowed
+from host import allowed, by_open_mpi
 from system import Spheres, dump_lines, from_restart, input_lines, lmp, lmp_in_turn, read_dump
 from without_inertia import ALL, FIX, P6, THREE, contacts, mixed, weight
 
@@ -49,7 +49,7 @@ def difference(a, b):
     return np.abs(d).max()
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", by_open_mpi(WAYS, but=2))
 def test_ranks_and_newton_do_not_matter(tmp_path, way):
     frames = []
     for ranks, newton in allowed((1, "on"), (2, "on"), (4, "off")):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import model
+from host import by_open_mpi
 from same_end import same_end_on_ranks
 from system import LammpsError, Spheres, from_restart, input_lines, lmp
 from test_wall import pull
@@ -218,7 +219,7 @@ def script(folder, way, runs, newton="on", begin=None):
     return lines + ["variable fx atom 2*sin(id)", "fix weight all addforce v_fx 0 -1", MOVE] + runs
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", by_open_mpi(WAYS))
 def test_ranks_newton_and_restart_do_not_matter(tmp_path, way):
     same_end_on_ranks(tmp_path, functools.partial(script, tmp_path, way), 8,
                       "xu yu zu vx vy vz omegax omegay omegaz", before_restart=3)

@@ -8,6 +8,7 @@ import pytest
 
 import model
 from brownian import A, ETA, KT, copies, end, in_pieces
+from host import by_open_mpi
 from system import LammpsError, dump_lines
 from test_directions import CENTRE, MOVE, POINTS, dipole_lines, dipoles, directions, some_quaternions, turned
 
@@ -201,7 +202,7 @@ def script(folder, way, runs, x=None, e=None):
 
 
 @pytest.mark.ranks(2)
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", by_open_mpi(WAYS))
 def test_ranks_agree(tmp_path, way):
     one = end(tmp_path, script(tmp_path, way, END + ["run 20"]))
     assert np.abs(one[:, 6:]).max() > 0.5

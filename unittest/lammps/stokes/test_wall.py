@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import model
-from host import at_most
+from host import at_most, by_open_mpi
 from same_end import same_end_on_ranks
 from system import LammpsError, Spheres, dump_lines, from_restart, input_lines, lmp, read_dump
 
@@ -258,12 +258,13 @@ def test_a_lone_sphere_is_not_alone_at_a_wall(simulation):
                                          ("multiblob 12 rigid_clumps yes", "zlo")])
 def test_ewald_sums_have_images(simulation, style, side):
     """Against all pairs: spheres that cut the wall among them; and alone"""
-    for n in (30, 1):
-        spheres, F = heap(30)
+    many = 12 if style else 30
+    for n in (many, 1):
+        spheres, F = heap(many)
         x, a = spheres.x[:n], spheres.a[:n]
         v = []
         for how in ("direct", "ewald far_field_tolerance 1e-6"):
-            scene = Spheres(turned(x, side), a, molecule=[1, 1] + [0] * 28 if n > 1 else 0)
+            scene = Spheres(turned(x, side), a, molecule=[1, 1] + [0] * (n - 2) if n > 1 else 0)
             sim = fall(simulation, scene, turned(F[:n], side),
                        f"cut_off_distance inf visc 1 {style} wall {side} 0 relative_tolerance 1e-9 far_field {how}",
                        box=[(-60, 60)] * 3)
@@ -310,7 +311,7 @@ STYLES = {"points": "rotation yes", "shells": "multiblob 12 rigid_clumps yes lub
 
 
 def script(folder, style, runs, newton="on", begin=None):
-    spheres, _ = heap()
+    spheres, _ = heap(6)
     spheres.x[3, 2] *= 1.2
     pair = f"cut_off_distance inf visc 1 {STYLES[style]} wall zlo 0 relative_tolerance 1e-12"
     lines = input_lines(spheres, pair, str(folder / "heap.data"), fix=False, dt=0.05, newton=newton, box=BOX)
@@ -319,7 +320,7 @@ def script(folder, style, runs, newton="on", begin=None):
     return lines + ["variable fx atom 0.4*sin(id)", "fix weight all addforce v_fx 0 -3", MOVE] + runs
 
 
-@pytest.mark.parametrize("style", STYLES)
+@pytest.mark.parametrize("style", by_open_mpi(STYLES, but=2))
 def test_ranks_newton_and_restart_do_not_matter(tmp_path, style):
     whole = same_end_on_ranks(tmp_path, functools.partial(script, tmp_path, style), 4,
                               "x y z vx vy vz omegax omegay omegaz", before_restart=2)

@@ -269,6 +269,7 @@ static void a_periodic_box_drifts(void **state)
 {
   (void) state;
   place_of s = THREE;
+  s.n = CHECK_SIZE(3, 2);
   s.side = 6.0;
   for (s.films = CHECK_SIZE(0, 1); s.films < 2; s.films++) assert_true(error_of_drift(&s, 0) < 1e-4);
 }
@@ -302,9 +303,10 @@ static void above_a_wall_differences_make_up(void **state)
 
 static const double TRIMER[9] = {0, 0, 0, 2.05, 0, 0, 0.8, 1.95, 0};
 
-static place_of trimers(int films)
+/* Two of m spheres */
+static place_of clumps_of(int m, int films)
 {
-  place_of s = {.n = 2, .m = 3, .X = TRIMER, .films = films, .centre = {0, 0, 0, 1.5, 2.3, 1.9}};
+  place_of s = {.n = 2, .m = m, .X = TRIMER, .films = films, .centre = {0, 0, 0, 1.5, 2.3, 1.9}};
   const double turn[2][3] = {{0.3, -0.2, 0.5}, {-0.9, 0.4, 1.1}};
   for (int b = 0; b < 2; b++) sd_rotation(turn[b], s.R + 9 * b);
   return s;
@@ -313,28 +315,28 @@ static place_of trimers(int films)
 static void clumps_that_turn_drift_by_an_A_of_their_shape(void **state)
 {
   (void) state;
-  const place_of s = trimers(0);
+  const place_of s = clumps_of(3, 0);
   assert_true(error_of_drift(&s, 0) < 1e-4);
 }
 
 static void clumps_with_films_drift_too(void **state)
 {
   (void) state;
-  const place_of s = trimers(1);
+  const place_of s = clumps_of(3, 1);
   assert_true(error_of_drift(&s, 0) < 1e-4);
 }
 
 static void differences_make_up_for_any_A(void **state)
 {
   (void) state;
-  const place_of s = trimers(0);
+  const place_of s = clumps_of(CHECK_SIZE(3, 2), 0);
   assert_true(error_of_drift(&s, 1) < 1e-4);
 }
 
 static void clumps_above_a_wall_drift_too(void **state)
 {
   (void) state;
-  place_of s = trimers(1);
+  place_of s = clumps_of(CHECK_SIZE(3, 2), 1);
   s.wall = (sd_wall){.axis = 2, .sign = 1, .at = -2.2};
   assert_true(error_of_drift(&s, 1) < 1e-3);
 }
