@@ -14,6 +14,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 using namespace LAMMPS_NS;
@@ -111,6 +112,28 @@ double FixSphInlet::common_speed()
   return discharge() * width / sum_of_all(world, volume);
 }
 
+/* As far as about a spacing beside its particles. A particle itself finds a quarter of its mass at least around it. */
+bool FixSphInlet::reaches(const double *x) const
+{
+  constexpr double LEAST = 0.1;
+  return !strayed || mass_over(layer, x) > LEAST * full;
+}
+
+void FixSphInlet::look_at_strays()
+{
+  int mine = 0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (is_beyond(i) && marks[i][STATE] == REPLACED) mine = 1;
+  strayed = largest_of_all(world, mine) > 0;
+  if (!strayed) return;
+  layer = over_section([this](int i) -> const double * {
+    const double *mark = marks[i];
+    return mark[STATE] == IN_LAYER ? atom->x[i] : mark[STATE] == DUE ? mark + PLACE : nullptr;
+  });
+  full = 0.0;
+  for (size_t k = 0; k < layer.size(); k += 2) full = std::max(full, layer[k]);
+}
+
 /* As the fluid before each particle flows, but not backwards. At the beginning of a run, as it is. */
 void FixSphInlet::follow_flow()
 {
@@ -151,11 +174,17 @@ void FixSphInlet::find_speeds()
     if ((atom->mask[i] & groupbit) && marks[i][STATE] == DUE) marks.writable(i)[SPEED] = speeds[i];
 }
 
+/* What comes back over the plane is held where the layer is. Elsewhere, it is spray over the layer of a river or
+ * beside that of a tap, it bounces off the plane. */
 void FixSphInlet::move_layer()
 {
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!is_held(i)) continue;
-    for (int d = 0; d < 3; d++) atom->v[i][d] = d == axis ? -side * speeds[i] : 0.0;
+    if (!is_beyond(i)) continue;
+    double *v = atom->v[i];
+    if (is_held(i))
+      for (int d = 0; d < 3; d++) v[d] = d == axis ? -side * speeds[i] : 0.0;
+    else
+      v[axis] = -side * std::fabs(v[axis]);
   }
 }
 
@@ -168,11 +197,12 @@ void FixSphInlet::setup_pre_exchange()
   int mine = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    mine += is_held(i);
-    if (!marks.has(i)) marks.writable(i)[STATE] = is_held(i) ? IN_LAYER : REPLACED;
+    mine += is_beyond(i);
+    if (!marks.has(i)) marks.writable(i)[STATE] = is_beyond(i) ? IN_LAYER : REPLACED;
   }
   if (largest_of_all(world, mine) == 0)
     voice.fail("its layer is empty: fill it with particles of its group (create_atoms)");
+  look_at_strays();
   find_speeds();
   move_layer();
 }
@@ -186,7 +216,7 @@ void FixSphInlet::post_integrate()
     double *mark = marks.writable(i);
     if (mark[STATE] == DUE)
       mark[PLACE + axis] -= side * update->dt * mark[SPEED];
-    else if (mark[STATE] == IN_LAYER && !holds(atom->x[i])) {
+    else if (mark[STATE] == IN_LAYER && !is_beyond(i)) {
       mark[STATE] = DUE;
       std::copy_n(atom->x[i], 3, mark + PLACE);
       mark[PLACE + axis] += side * width;
@@ -194,6 +224,7 @@ void FixSphInlet::post_integrate()
       passed += Sph::mass(lmp, i);
     }
   }
+  look_at_strays();
   find_speeds();
   move_layer();
 }

@@ -26,6 +26,7 @@ class FixSphInlet : public FixSphOpening {
   BodyForce gravity;
 
  protected:
+  bool reaches(const double *x) const override;
   std::vector<SavedNumbers> saved() override;
   void write_state(NamedState &) override;
   void read_state(const NamedState &in) override { resumed = !in.get("time").empty(); }
@@ -53,6 +54,12 @@ class FixSphInlet : public FixSphOpening {
     double left, parent, place[3], speed, rho, mass, radius;
     int type, mask;
   };
+  /* Are particles beyond the plane that are none of the layer, on any rank? If so: the mass of the layer
+   * over the section, and the largest of its nodes. */
+  bool strayed = false;
+  std::vector<double> layer;
+  double full = 0.0;
+  void look_at_strays();
   void read_hydrograph(const std::string &file);
   double discharge();
   double common_speed();

@@ -66,11 +66,6 @@ void FixSphOpening::setup_pre_exchange()
   check_side();
 }
 
-bool FixSphOpening::is_held(int i) const
-{
-  return (atom->mask[i] & groupbit) && holds(atom->x[i]);
-}
-
 /* Fluid at the plane sees 2 h into the layer; new particles are made up to half of the skin late, and
  * the last row stands a spacing before the end. Spacing and half of the skin are less than h. */
 void FixSphOpening::check_width()
@@ -114,30 +109,52 @@ std::array<double, 2> FixSphOpening::across(const double *x) const
   return {x[d0], x[d1]};
 }
 
-/* Nodes are about h/2 apart, a spacing or less: twice as far, they blunted the profile of a channel so much that the
- * pressure gradient before the outlet was 4 % too small. */
-void FixSphOpening::look_at_flow()
+double FixSphOpening::largest_h() const
 {
   double h = 0.0;
   for (int type = 1; type <= atom->ntypes; type++)
     if (pair->takes(type)) h = std::max(h, pair->smoothing_length(type));
+  return h;
+}
+
+void FixSphOpening::look_at_flow()
+{
+  const double support = 2.0 * largest_h();
+  flow = over_section([this, support](int i) -> const double * {
+    const double before = -beyond(atom->x[i]);
+    return before >= 0.0 && before < support ? atom->x[i] : nullptr;
+  });
+}
+
+/* Nodes are about h/2 apart, a spacing or less: twice as far, they blunted the profile of a channel so much that the
+ * pressure gradient before the outlet was 4 % too small. */
+std::vector<double> FixSphOpening::over_section(const std::function<const double *(int)> &place)
+{
   const auto lo = across(domain->boxlo), hi = across(domain->boxhi);
   for (int d = 0; d < 2; d++) {
     const bool flat = d == 1 && domain->dimension == 2;
-    section.n[d] = flat ? 1 : 1 + std::max(1, (int) (2.0 * (hi[d] - lo[d]) / h));
+    section.n[d] = flat ? 1 : 1 + std::max(1, (int) (2.0 * (hi[d] - lo[d]) / largest_h()));
     section.lo[d] = lo[d];
     section.step[d] = flat ? 1.0 : (hi[d] - lo[d]) / (section.n[d] - 1);
   }
   std::vector<double> mine(2 * (size_t) section.n[0] * section.n[1], 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    const double before = -beyond(atom->x[i]);
-    if (before >= 0.0 && before < 2.0 * h)
-      sd_sph_section_add(&section, across(atom->x[i]).data(), Sph::mass(lmp, i), side * atom->v[i][axis],
-                         mine.data());
+    if (const double *x = place(i))
+      sd_sph_section_add(&section, across(x).data(), Sph::mass(lmp, i), side * atom->v[i][axis], mine.data());
   }
-  flow.resize(mine.size());
-  MPI_Allreduce(mine.data(), flow.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM, world);
+  std::vector<double> all(mine.size());
+  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+/* A ghost across the box stands where its particle does. */
+double FixSphOpening::mass_over(const std::vector<double> &sums, const double *x) const
+{
+  double inside[3];
+  std::copy_n(x, 3, inside);
+  domain->remap(inside);
+  return sd_sph_section_mass(&section, across(inside).data(), sums.data());
 }
 
 double FixSphOpening::speed_before(const double *x, double otherwise) const

@@ -7,6 +7,7 @@
 #include "sph.h"
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace StokesDyn {
@@ -20,8 +21,8 @@ class FixSphOpening : public SphFix {
   double compute_scalar() override;
 
   /* Of a particle of the group at x: does it stand in the layer? */
-  bool holds(const double *x) const { return beyond(x) > 0.0; }
-  bool is_held(int i) const;
+  bool holds(const double *x) const { return beyond(x) > 0.0 && reaches(x); }
+  bool is_held(int i) const { return is_beyond(i) && reaches(atom->x[i]); }
   /* Has the layer a pressure that is given to it? */
   virtual bool gives_pressure() const = 0;
   /* That of this step; all ranks. Then that of particle i, in the layer. */
@@ -33,6 +34,10 @@ class FixSphOpening : public SphFix {
   /* the words FACE POSITION WIDTH, which come first */
   Keywords parse_place(int narg, char **arg);
   double beyond(const double *x) const { return side * (x[axis] - plane); }
+  /* Is particle i one of the group beyond the plane? */
+  bool is_beyond(int i) const { return (atom->mask[i] & groupbit) && beyond(atom->x[i]) > 0.0; }
+  /* Of a place beyond the plane: does the layer go so far across? */
+  virtual bool reaches(const double *) const { return true; }
 
   /* 0 1 2; 1: the layer is at the upper end of the flow, -1: at the lower one */
   int axis = 0, side = 1;
@@ -48,6 +53,10 @@ class FixSphOpening : public SphFix {
   void look_at_flow();
   double speed_before(const double *x, double otherwise) const;
   double whole_flow() const;
+  /* Masses and momenta at the nodes of the section; all ranks. place: of a particle of the group, nullptr
+   * if it does not count. Then the mass across from place x. */
+  std::vector<double> over_section(const std::function<const double *(int)> &place);
+  double mass_over(const std::vector<double> &sums, const double *x) const;
 
  private:
   /* the layer hides the empty space beyond it, and the fluid is not behind it */
@@ -55,6 +64,7 @@ class FixSphOpening : public SphFix {
   void check_side() const;
   sd_sph_section section = {};
   std::vector<double> flow;
+  double largest_h() const;
   std::array<double, 2> across(const double *x) const;
   std::vector<double> pressures;
 };

@@ -50,6 +50,14 @@ void sd_sph_section_add(const sd_sph_section *s, const double at[2], double m, d
   }
 }
 
+double sd_sph_section_mass(const sd_sph_section *s, const double at[2], const double *sums)
+{
+  const corners c = around(s, at);
+  double mass = 0.0;
+  for (int k = 0; k < 4; k++) mass += c.weight[k] * sums[2 * c.node[k]];
+  return mass;
+}
+
 double sd_sph_section_speed(const sd_sph_section *s, const double at[2], const double *sums,
                             double otherwise)
 {

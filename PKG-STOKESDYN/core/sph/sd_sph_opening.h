@@ -21,6 +21,9 @@ typedef struct {
 /* Adds a particle of mass m and speed v to the masses and momenta of the nodes, sums [2 n0 n1]. */
 void sd_sph_section_add(const sd_sph_section *s, const double at[2], double m, double v, double *sums);
 
+/* The mass at a place, linear between nodes: that of a node where as much surrounds it on all sides. */
+double sd_sph_section_mass(const sd_sph_section *s, const double at[2], const double *sums);
+
 /* The speed of the flow at a place, exact where it is linear in space and a particle stands at every node;
  * `otherwise` where there is none. */
 double sd_sph_section_speed(const sd_sph_section *s, const double at[2], const double *sums,

@@ -58,6 +58,18 @@ static void nodes_share_all_of_a_particle(void **state)
   CHECK_NEAR(momentum, 0.0, 1e-12);
 }
 
+/* Of a particle at a node: all of it there, a quarter in the middle of the cell, nothing a step away. */
+static void mass_is_linear_between_nodes(void **state)
+{
+  (void) state;
+  double sums[2 * 20] = {0};
+  const double node[2] = {-0.2, 0.35}, middle[2] = {-0.15, 0.425}, away[2] = {-0.1, 0.35};
+  sd_sph_section_add(&THREE_D, node, 0.8, 0.4, sums);
+  CHECK_NEAR(sd_sph_section_mass(&THREE_D, node, sums), 0.8, 1e-14);
+  CHECK_NEAR(sd_sph_section_mass(&THREE_D, middle, sums), 0.2, 1e-14);
+  CHECK_NEAR(sd_sph_section_mass(&THREE_D, away, sums), 0.0, 1e-14);
+}
+
 static void where_nothing_flows_the_speed_is_the_one_asked_for(void **state)
 {
   (void) state;
@@ -74,6 +86,7 @@ int main(void)
       cmocka_unit_test(a_hydrograph_is_linear_between_its_rows_and_constant_beyond),
       cmocka_unit_test(a_linear_profile_comes_back),
       cmocka_unit_test(nodes_share_all_of_a_particle),
+      cmocka_unit_test(mass_is_linear_between_nodes),
       cmocka_unit_test(where_nothing_flows_the_speed_is_the_one_asked_for),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
