@@ -236,6 +236,21 @@ void VansStream::tell_limits(double T, double dt, bool held, const double cut[2]
   }
 }
 
+/* Viscosity alone rubs on a bottom without grains. In a slice that goes beyond its layer that is too little; the
+ * errors are those of the page vans_stream. */
+void VansStream::tell_bottom()
+{
+  constexpr double HIGHEST = 20.0, FINE = 5.0;
+  if (told_bottom || set.yade() || fluid.turbulence == SD_VANS_LAMINAR || phi()[0] > 0.0) return;
+  const double size = sd_vans_bottom_slice(&mesh, &fluid, U.data());
+  if (!(size > HIGHEST)) return;
+  told_bottom = true;
+  set.voice.warn("keyword mesh: the lowest slice has no grains and is " + text(size) +
+                 " nu/u_star high: above 20 the bottom rubs too little and the stream becomes too fast, twice as fast "
+                 "at 100; give the lowest slices a height of at most " + text(FINE / size * sd_vans_height(&mesh, 0)) +
+                 ", 5 nu/u_star (mesh file NAME has slices of different heights)");
+}
+
 /* b, and what it has too much at the start as a source. */
 void VansStream::exchange(double T, double dt, bool held, std::vector<double> &rest)
 {
@@ -312,6 +327,7 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
   if (fluid.held) fluid.gx = drive;    // for what else asks how strong the stream is
   keep_books(area, T, given, rest, books);
   ledger.transit -= given.all + returned;
+  tell_bottom();
 }
 
 std::vector<double> VansStream::lagrangian_times(const std::vector<double> &u_star) const

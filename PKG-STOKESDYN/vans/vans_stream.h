@@ -131,7 +131,7 @@ class VansStream {
   std::vector<double> scratch;
   /* is drag_density that of the profile? */
   bool density_known = false;
-  bool told_far = false, told_cut = false;
+  bool told_far = false, told_cut = false, told_bottom = false;
 
   const double *classes() const;
   void move_surface(double area, const std::vector<double> &phi_before);
@@ -143,6 +143,7 @@ class VansStream {
   void keep_books(double area, double T, const Given &given, const std::vector<double> &rest,
                   sd_vans_books &books);
   void tell_limits(double T, double dt, bool held, const double cut[2]);
+  void tell_bottom();
   [[noreturn]] void no_average(int n, double area);
   void check_mesh(const NamedState &state) const;
   void load_surface(const NamedState &state);

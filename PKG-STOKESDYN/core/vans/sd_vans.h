@@ -301,6 +301,11 @@ double sd_vans_mean_height(const sd_vans_mesh *mesh, const double *phi);
 /* The one of the largest size, with its sign. */
 double sd_vans_largest_stress(const sd_vans_mesh *mesh, const double *stress);
 
+/* Height of the lowest slice in units of nu/u_star, where no grains are in it: dz u_star/nu with the stress
+ * that viscosity has between its middle and the bottom, rho u_star^2 = eta |U_1|/(dz/2). Without a wall law
+ * that is all that the bottom can take from the water. U [N+1] */
+double sd_vans_bottom_slice(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U);
+
 /* Elevation of the bed: middle of the highest slice under water where phi has a maximum above 0.5;
  * 0 if there is none. */
 double sd_vans_bed_elevation(const sd_vans_mesh *mesh, const double *phi);

@@ -35,6 +35,11 @@ double sd_vans_largest_stress(const sd_vans_mesh *mesh, const double *stress)
   return largest;
 }
 
+double sd_vans_bottom_slice(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U)
+{
+  return sqrt(2.0 * sd_vans_height(mesh, 0) * fabs(U[1]) * fluid->rho / fluid->eta);
+}
+
 /* Layers of grains are maxima of phi; the topmost layer that is dense is the bed. The highest slice
  * is above the surface and the lowest has no neighbour below, so that neither counts. */
 double sd_vans_bed_elevation(const sd_vans_mesh *mesh, const double *phi)

@@ -105,6 +105,17 @@ static void effective_viscosities(void **state)
   assert_true(fabs(sd_vans_effective_viscosity(&fluid, 0.3, 1) / nu - 1.75) < 1e-15);
 }
 
+/* Between the bottom and the middle of the lowest slice the stress is eta U/(dz/2), whatever the sign. */
+static void the_lowest_slice_is_measured_by_its_own_stress(void **state)
+{
+  (void) state;
+  const double edge[3] = {0.0, 0.004, 0.007}, u_star = 0.05, rho = 1100, eta = 2e-3;
+  const double U[4] = {0.0, -rho * u_star * u_star / eta * 0.002, 7.0, 7.0};
+  const sd_vans_mesh mesh = {2, 0.1, 0.0, edge};
+  const sd_vans_fluid fluid = {.rho = rho, .eta = eta};
+  assert_true(fabs(sd_vans_bottom_slice(&mesh, &fluid, U) / (0.004 * u_star * rho / eta) - 1.0) < 1e-14);
+}
+
 /* A bed up to 10 slices with its loosest grains on top, water of 0.5 above it. */
 static void profiles_tell_bed_transport_and_times(void **state)
 {
@@ -195,6 +206,7 @@ int main(void)
       cmocka_unit_test(mixing_lengths),
       cmocka_unit_test(lengths_among_grains),
       cmocka_unit_test(effective_viscosities),
+      cmocka_unit_test(the_lowest_slice_is_measured_by_its_own_stress),
       cmocka_unit_test(profiles_tell_bed_transport_and_times),
       cmocka_unit_test(eddies_follow_their_slice),
       cmocka_unit_test(friction_velocities_have_the_sign_of_the_stress),

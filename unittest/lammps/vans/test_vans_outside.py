@@ -1,5 +1,7 @@
 """fix hydro/vans beside what others have measured or published: falls in oil and of sand, batch settling, roughness of
 a bed, hops, grains that stick."""
+import re
+
 import numpy as np
 import pytest
 # close_scenes is a fixture
@@ -237,6 +239,32 @@ run 0
     assert done.returncode == 0, done.stdout[-2000:]
     assert done.stdout.count("a smooth bottom rubs as if it had grains of 75 nu/u_star") == (law is not None)
     assert law is None or f"keyword turbulence: there are no grains, and with {law} a" in done.stdout
+
+
+@pytest.mark.parametrize("slices, words, told", [
+    (21, "sublayer yes", True), (21, "turbulence rousseau", True), (501, "sublayer yes", False),
+    (21, "turbulence none", False), (21, "rules yade", False), (21, "radius 0.01 given file phi", False)])
+def test_slices_too_high_for_a_smooth_bottom_are_told_once(tmp_path, slices, words, told):
+    """H u_star/nu becomes 3162, so that each of 20 slices is 158 nu/u_star high, and each of 500 is 6. Grains in the
+    lowest one rub by their drag. The warning asks for five of these units."""
+    write_columns(tmp_path / "phi", 0.5 * (np.arange(21) < 3), np.zeros(21), np.zeros(21))
+    done = run_lmp(tmp_path, f"""
+plugin load stokesdynplugin.so
+units si
+atom_style sphere
+region box block 0 1 0 1 0 1
+create_box 1 box
+pair_style zero 0.1
+pair_coeff * *
+fix vans all hydro/vans 1 mesh {slices} $(0.1/({slices}-1)) 0 fluid 1000 0.001 gravity 0.01 0 -9.81 couple fluid &
+    solve 400 0.4 {words}
+run 2
+""")
+    assert done.returncode == 0, done.stdout[-2000:]
+    says = re.findall("slice has no grains and is ([0-9.]+) nu/u_star high.* at most ([0-9.e-]+),", done.stdout)
+    assert len(says) == told
+    for size, wanted in says:
+        assert 20 < float(size) < 160 and float(wanted) * float(size) == pytest.approx(5 * 0.005, rel=1e-4)
 
 
 STICK = """
