@@ -237,7 +237,7 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair>, public SphCoefficients {
   void pressures_of_all();
   std::vector<double> shear_rates();
   void find_viscosities();
-  void look_at_friction();
+  void look_at_step();
   void look_at_surface(int found);
   void forces(bool rates);
   double sum_forces(const sd_sph_model &of, Neighbours &both, const sd_sph_list &half, bool rates, Rows &F,

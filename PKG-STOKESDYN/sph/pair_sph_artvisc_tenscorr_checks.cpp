@@ -72,7 +72,7 @@ void PairSph::look_at_beginning()
   if (!resumes()) look_at_scene();
   if (wall) look_at_walls();
   if (wall) tell_of_belts();
-  if (law != SD_SPH_NEWTON && !implicit) look_at_friction();
+  look_at_step();
 }
 
 /* Both speeds of sound should be one: limits of the time step, artVisc and delta go by that of

@@ -42,23 +42,35 @@ void PairSph::find_viscosities()
   particles.mu = viscosities.data();
 }
 
-/* Friction is explicit: where a fluid is at rest it has mumax, and the time step must bear that, though fix
- * check/timestep/sph sees the viscosities of the moment. */
-void PairSph::look_at_friction()
+/* Beyond these two limits a run grows from its first steps on, whatever the flow. Friction is explicit; with a law
+ * of viscosity a fluid at rest has mumax, though fix check/timestep/sph sees the viscosities of the moment. */
+void PairSph::look_at_step()
 {
-  double mine = HUGE_VAL;
+  const bool newton = law == SD_SPH_NEWTON;
+  double sound = HUGE_VAL, friction = HUGE_VAL;
   for (int i = 0; i < atom->nlocal; i++) {
     const int t = atom->type[i];
-    if (!used(t) || is_wall(i) || !(atom->rho[i] > 0.0)) continue;
+    if (!used(t) || is_wall(i) || !state_of(i) || !(atom->rho[i] > 0.0)) continue;
+    const double h = table[H][t][t];
+    sound = std::min(sound, h / speed_of_sound(i));
+    if (!model.friction || implicit) continue;
     const sd_sph_rheology fluid = rheology(t);
-    const double h = table[H][t][t], most = sd_sph_largest_mu(&fluid);
-    mine = std::min(mine, h * h * atom->rho[i] / (8.0 * most));
+    const double most = newton ? table[MU][t][t] : sd_sph_largest_mu(&fluid);
+    friction = std::min(friction, h * h * atom->rho[i] / (8.0 * most));
   }
-  const double limit = smallest_of_all(world, mine);
-  if (update->dt <= limit) return;
-  voice.warn("keyword rheology: the time step " + text(update->dt) + " is longer than h^2 rho/(8 mumax) = " +
-             text(limit) + ": friction is unstable where the fluid is nearly at rest; use a smaller mumax "
-             "(rho c h/3 costs no time step), a smaller time step, or implicit yes");
+  sound = smallest_of_all(world, sound);
+  friction = smallest_of_all(world, friction);
+  const std::string dt = text(update->dt);
+  if (update->dt > sound)
+    voice.warn("the time step " + dt + " is longer than h/c = " + text(sound) +
+               ", the time that sound takes over a smoothing length: the water may fly apart; take 0.2 to 0.4 of it");
+  if (update->dt > friction && newton)
+    voice.warn("keyword viscosity: the time step " + dt + " is longer than h^2 rho/(8 mu) = " + text(friction) +
+               ": friction is unstable; use a smaller time step, or implicit yes");
+  else if (update->dt > friction)
+    voice.warn("keyword rheology: the time step " + dt + " is longer than h^2 rho/(8 mumax) = " + text(friction) +
+               ": friction is unstable where the fluid is nearly at rest; use a smaller mumax "
+               "(rho c h/3 costs no time step), a smaller time step, or implicit yes");
 }
 
 // --- implicit friction --------------------------------------------------------------------------------

@@ -193,6 +193,18 @@ def test_two_fluids_without_their_volume_are_warned_of(tmp_path, rho0, volume, w
     assert (f"fix q has rho0 = {rho0}, fix p has rho0 = 1: where these fluids meet" in log) == warned
 
 
+@pytest.mark.parametrize("dt, style, says", [
+    (0.009, "viscosity 0.001 central", ""), (0.011, "viscosity 0.001 central", "is longer than h/c = 0.01,"),
+    (0.002, "viscosity 0.62 central", ""), (0.0021, "viscosity 0.62 central", "than h^2 rho/(8 mu) = 0.00201613"),
+    (0.0021, "viscosity 0.62 central implicit yes", "")])
+def test_a_time_step_that_no_flow_bears_is_warned_of(tmp_path, dt, style, says):
+    """h/c is 0.01, and h^2 rho/8 is 0.00125."""
+    rest = REST.format(volume="no").replace("timestep 0.002", f"timestep {dt}").replace("run 1", "run 0")
+    log = log_of(tmp_path, "variable ratio index 1\n" + FLOOR.replace("viscosity 0.001 central", style) +
+                 "fix p all sph/pressure Tait 14.2857 1 7" + rest)
+    assert ("WARNING: Pair style sph/artVisc/tensCorr: " in log) == bool(says) and says in log
+
+
 def test_a_wall_without_suction_pulls_half_as_much():
     """Water that moves away from its floor, without gravity: half of the pull is the floor's, and without it no wall
     particle has a pressure below 0."""
