@@ -85,17 +85,18 @@ double Guess::line() const
   return update->setupflag ? 0.0 : memory->global.line;
 }
 
-Guess::Start Guess::none() const
+Guess::Start Guess::none(std::vector<double> room) const
 {
   const size_t n = scene.size(), of_spheres = width() * (n + 1);
   const size_t of_points = shells.settings.on() ? 3 * (size_t) shells.first_of_rows()[n] + 3 : of_spheres;
-  return {false, std::vector<double>(of_points), std::vector<double>(settings.lubrication.on ? of_spheres : 0)};
+  room.assign(of_points, 0.0);
+  return {false, std::move(room), std::vector<double>(settings.lubrication.on ? of_spheres : 0)};
 }
 
 Guess::Start Guess::recall(Question asked, std::vector<double> room) const
 {
   const bool needless = asked == MOTIONS && settings.forces_are_loads() && !bodies.bodies.known;
-  if (needless || solves_kept(asked) == 0.0) return none();
+  if (needless || solves_kept(asked) == 0.0) return none(std::move(room));
   Start start = {true, {}, {}};
   if (shells.settings.on())
     start.l = recall_points(line(), std::move(room));

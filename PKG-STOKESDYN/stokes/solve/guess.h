@@ -46,7 +46,7 @@ class Guess : protected LAMMPS_NS::Pointers {
   /* Before a solve: from the memory, if it stands. room: of an l that nobody needs any more */
   Start recall(Question asked, std::vector<double> room = {}) const;
   /* Nothing to begin from */
-  Start none() const;
+  Start none(std::vector<double> room = {}) const;
   /* After it: to the memory */
   void keep(Question asked, const Found &);
   /* A sphere turns with its clump by the rotation matrix R, and so does what the next solve begins

@@ -1,6 +1,8 @@
 /* Kernels of each instruction set against those in plain C. */
 #include "periodic.h"
 
+#include <limits.h>
+
 #include "sd_ewald_pairs.h"
 #include "sd_ewald_runs.h"
 #include "sd_grid_internal.h"
@@ -67,17 +69,24 @@ static void near_parts_agree(void **state)
       }
 }
 
+/* Where spheres stand on a brick (sd_spreading) */
+typedef struct {
+  int corner[N][3];
+  double place[N][4];
+} places;
+
 /* Spheres without an order on a brick, with all kinds of windows */
-static sd_spreading spheres_on_a_brick(const cloud *c, sd_spread_place *place, const sd_window *w, int terms, int width)
+static sd_spreading spheres_on_a_brick(const cloud *c, places *p, const sd_window *w, int terms, int width)
 {
-  sd_spreading s = {.n = N, .width = width, .terms = terms, .window = w, .place = place, .row = ROW,
+  sd_spreading s = {.n = N, .width = width, .terms = terms, .window = w, .place = p->place, .row = ROW,
                     .layer = (long) ROW * SIDE};
+  s.corner = (const int(*)[3]) p->corner;
   for (int i = 0; i < N; i++) {
-    place[i].b = terms % 2 ? 0.0 : 0.1 * c->a[i];
+    p->place[i][3] = terms % 2 ? 0.0 : 0.1 * c->a[i];
     for (int d = 0; d < 3; d++) {
       const double at = c->x[3 * i + d] / 12.0 * (SIDE - w->points - 1);
-      place[i].at[d] = (int) at;
-      place[i].v[d] = 2.0 * (at - floor(at)) - 1.0;
+      p->corner[i][d] = (int) at;
+      p->place[i][d] = 2.0 * (at - floor(at)) - 1.0;
     }
   }
   for (int d = 0; d < 3; d++) {
@@ -97,14 +106,14 @@ static void spreading_and_interpolation_agree(void **state)
   for (int points = 4; points <= SD_WINDOW_MOST_POINTS; points++)
     for (int terms = 1; terms <= 4; terms++) {
       static sd_window w;
-      sd_spread_place place[N];
+      places p;
       double first[6 * N], F[6 * N];
       const int width = terms == 3 || (terms == 4 && points % 2) ? 6 : 3;
       sd_window_fit(points, 2.25 * points, 1e-9, &w);
       for (int k = -1; k < 3; k++) {
         const sd_isa isa = k < 0 ? SD_ISA_PLAIN : sets[k];
         if (!sd_isa_supported(isa)) continue;
-        sd_spreading s = spheres_on_a_brick(&c, place, &w, terms, width);
+        sd_spreading s = spheres_on_a_brick(&c, &p, &w, terms, width);
         double largest = 0.0;
         s.brick = k < 0 ? expected : brick;
         s.F = k < 0 ? first : F;
@@ -128,14 +137,14 @@ static void three_terms_do_for_equal_spheres_with_torques(void **state)
   const size_t numbers = (size_t) SIDE * SIDE * ROW + 64;
   double *brick[2], F[2][6 * N];
   const cloud c = make(7, 0);
-  sd_spread_place place[N];
+  places p;
   sd_window w;
   sd_window_fit(6, 2.25 * 6, 1e-9, &w);
   for (int k = 0; k < 2; k++) {
     brick[k] = calloc(numbers, sizeof(double));
-    sd_spreading s = spheres_on_a_brick(&c, place, &w, 4, 6);
+    sd_spreading s = spheres_on_a_brick(&c, &p, &w, 4, 6);
     s.terms = 3 + k;
-    for (int i = 0; i < N; i++) place[i].b = 0.0;
+    for (int i = 0; i < N; i++) p.place[i][3] = 0.0;
     memcpy(F[k], c.F, sizeof(c.F));
     s.brick = brick[k];
     s.F = F[k];
@@ -192,7 +201,7 @@ static void floats_are_as_doubles(sd_spreading *s, const cloud *c, int width)
 {
   const size_t numbers = (size_t) ROW * SIDE * SIDE + 64;
   double *expected = calloc(numbers, sizeof(double)), first[6 * N], largest = 0.0, fastest = 0.0;
-  float *brick = malloc(sizeof(float) * numbers), F[6 * N];
+  float *brick = malloc(sizeof(float) * numbers), F[6 * N], place[4 * N];
   memcpy(first, c->F, sizeof(first));
   s->brick = expected;
   s->F = first;
@@ -200,6 +209,8 @@ static void floats_are_as_doubles(sd_spreading *s, const cloud *c, int width)
   SD_KERNELS_OF(sd_ewald, plain, SD_ISA_PLAIN)->interpolate(s);
   for (size_t g = 0; g < numbers; g++) largest = fmax(largest, fabs(expected[g]));
   for (int i = 0; i < width * N; i++) fastest = fmax(fastest, fabs(first[i]));
+  for (int i = 0; i < 4 * N; i++) place[i] = (float) ((const double *) s->place)[i];
+  s->place = place;
   s->brick = brick;
   s->F = F;
   for (int k = -1; k < 3; k++) {
@@ -224,9 +235,9 @@ static void windows_of_floats_are_those_of_doubles(void **state)
     for (int terms = 1; terms <= 4; terms++) {
       const int width = terms >= 3 ? 6 : 3;
       sd_window w;
-      sd_spread_place place[N];
+      places p;
       sd_window_fit(points, 2.3 * points, 1e-5, &w);
-      sd_spreading s = spheres_on_a_brick(&c, place, &w, terms, width);
+      sd_spreading s = spheres_on_a_brick(&c, &p, &w, terms, width);
       floats_are_as_doubles(&s, &c, width);
     }
 }
@@ -239,19 +250,19 @@ static void points_side_by_side_are_spread_like_any(void **state)
   const cloud c = make(11, 1);
   for (int points = 4; points <= 8; points++) {
     sd_window w;
-    sd_spread_place place[N];
+    places p;
     sd_ewald_runs runs = {0};
     int sphere[N];
     uint64_t seed = 9;
     sd_window_fit(points, 2.25 * points, 1e-5, &w);
-    sd_spreading s = spheres_on_a_brick(&c, place, &w, 1, 3);
+    sd_spreading s = spheres_on_a_brick(&c, &p, &w, 1, 3);
     for (int i = 0; i < N; i++) {
       sphere[i] = i + (i >= N - 6); /* the last shell in two halves */
       for (int d = 0; d < 3 && i >= 12; d++)
-        place[i].at[d] = place[i / 12 * 12].at[d] / 2 + (int) uniform(&seed, 0, SD_RUN_WIDE - points + 0.99);
+        p.corner[i][d] = p.corner[i / 12 * 12][d] / 2 + (int) uniform(&seed, 0, SD_RUN_WIDE - points + 0.99);
     }
-    for (int d = 0; d < 3; d++) place[0].at[d] = 0; /* and the first point of the first shell far from all others */
-    assert_int_equal(sd_ewald_runs_find(&runs, N, sphere, place, points), SD_OK);
+    for (int d = 0; d < 3; d++) p.corner[0][d] = 0; /* and the first point of the first shell far from all others */
+    assert_int_equal(sd_ewald_runs_find(&runs, N, sphere, s.corner, points), SD_OK);
     assert_true(runs.n >= 10);
     for (int k = 0, end = 0; k < runs.n; end = runs.run[k].first + runs.run[k].many, k++) {
       assert_true(runs.run[k].first >= end && runs.run[k].many <= SD_GROUP_POINTS && runs.run[k].first > 0);
@@ -261,6 +272,53 @@ static void points_side_by_side_are_spread_like_any(void **state)
     s.run = runs.run;
     floats_are_as_doubles(&s, &c, 3);
     sd_ewald_runs_free(&runs);
+  }
+}
+
+/* Spheres of a tilted frame, two of them on a point of the grid, find their corners and how far they are from there;
+ * one that is no number, far away or out of bounds is not there. */
+static void spheres_find_their_places_on_a_grid(void **state)
+{
+  (void) state;
+  enum { MANY = SD_STAND_MANY - 3, POINTS = 4 };
+  const sd_standing frame = {.origin = {0.3, -0.2, 0.1}, .gradient = {{2, 0.3, -0.1}, {0, 1.5, 0.2}, {0, 0, 1.25}},
+                             .shift = -0.5 * POINTS, .lo = {-9, -9, -9}, .hi = {9, 9, 9}, .a_ref = 0.7, .equal = 1,
+                             .first = {INT_MAX, INT_MAX, INT_MAX}, .last = {INT_MIN, INT_MIN, INT_MIN}};
+  for (int k = -2; k < 6; k++) {
+    const sd_isa isa = k < 0 ? SD_ISA_PLAIN : sets[k / 2];
+    if (!sd_isa_supported(isa)) continue;
+    const struct sd_ewald_kernels *kernels = k % 2 ? SD_KERNELS_OF(sd_ewald_single, plain, isa)
+                                                   : SD_KERNELS_OF(sd_ewald, plain, isa);
+    double place[4 * MANY]; /* of either precision */
+    int corner[MANY][3];
+    sd_standing s = frame;
+    uint64_t seed = 8;
+    for (int i = 0; i < MANY; i++)
+      for (int d = 0; d < 3; d++) s.x[d][i] = i < 2 ? s.origin[d] - 4.0 * i * (d == 0) : uniform(&seed, -9, 9);
+    for (int i = 0; i < MANY; i++) s.a[i] = s.a_ref;
+    kernels->stand(&s, MANY, corner, place);
+    for (int d = 0; d < 3; d++) {
+      int64_t sum = 0;
+      for (int i = 0; i < MANY; i++) {
+        double at = -0.5 * POINTS;
+        for (int c = 0; c < 3; c++) at += s.gradient[d][c] * (s.x[c][i] - s.origin[c]);
+        assert_int_equal(corner[i][d], (int) floor(at) + 1);
+        CHECK_NEAR(sd_number(place, kernels->bytes, 4 * i + d), 2.0 * (at - floor(at)) - 1.0, 1e-6);
+        assert_in_range(corner[i][d] - s.first[d], 0, s.last[d] - s.first[d]);
+        sum += corner[i][d];
+      }
+      assert_int_equal(s.sum[d], sum);
+    }
+    assert_true(s.equal && sd_number(place, kernels->bytes, 3) == 0.0);
+    const double nowhere[] = {NAN, INFINITY, -9.1};
+    for (int one = 0; one < 3; one++) {
+      sd_standing other = s;
+      other.x[1][5] = nowhere[one];
+      other.a[7] = 0.8;
+      kernels->stand(&other, MANY, corner, place);
+      assert_true(other.last[1] > SD_NOT_THERE && !other.equal);
+      CHECK_NEAR(sd_number(place, kernels->bytes, 4 * 7 + 3), (0.64 - 0.49) / 6.0, 1e-7);
+    }
   }
 }
 
@@ -352,6 +410,7 @@ int main(void)
       cmocka_unit_test(near_parts_of_floats_are_those_of_doubles),
       cmocka_unit_test(windows_of_floats_are_those_of_doubles),
       cmocka_unit_test(points_side_by_side_are_spread_like_any),
+      cmocka_unit_test(spheres_find_their_places_on_a_grid),
       cmocka_unit_test(rows_of_waves_agree),
       cmocka_unit_test(two_real_lines_are_a_complex_one),
   };

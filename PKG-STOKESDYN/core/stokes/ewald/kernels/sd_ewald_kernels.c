@@ -6,6 +6,7 @@
 
 #include "sd_ewald_near_kernel.h"
 #include "sd_ewald_near_groups_kernel.h"
+#include "sd_ewald_stand_kernel.h"
 #include "sd_ewald_spread_kernel.h"
 #include "sd_ewald_runs_kernel.h"
 #ifndef SD_SINGLE
@@ -50,10 +51,10 @@ static void open_row(void *const *f, const void *table, double sign_x, double si
 
 #ifdef SD_SINGLE
 const struct sd_ewald_kernels SD_KERNELS(sd_ewald_single) = {
-    sizeof(real), near_part, BUNCH, BUNCH_UNLIKE, NEAR_GROUPS, SPREAD, INTERPOLATE, periodic_row, open_row,
-    NULL, NULL, NULL, NULL};
+    sizeof(real), near_part, BUNCH, BUNCH_UNLIKE, NEAR_GROUPS, GROUPS_NEAR, stand_on_grid, SPREAD, INTERPOLATE,
+    periodic_row, open_row, NULL, NULL, NULL, NULL};
 #else
 const struct sd_ewald_kernels SD_KERNELS(sd_ewald) = {
-    sizeof(real), near_part, BUNCH, BUNCH_UNLIKE, NEAR_GROUPS, SPREAD, INTERPOLATE, periodic_row, open_row,
-    search, own_block, image_part, image_rows};
+    sizeof(real), near_part, BUNCH, BUNCH_UNLIKE, NEAR_GROUPS, GROUPS_NEAR, stand_on_grid, SPREAD, INTERPOLATE,
+    periodic_row, open_row, search, own_block, image_part, image_rows};
 #endif

@@ -3,6 +3,8 @@
 #ifndef SD_EWALD_KERNELS_H
 #define SD_EWALD_KERNELS_H
 
+#include <stdint.h>
+
 #include "sd_image_kernel.h"
 #include "sd_image_wave.h"
 #include "sd_product.h"
@@ -59,6 +61,16 @@ typedef struct {
   const sd_near_group *near;
 } sd_near_groups;
 
+/* Groups as they are looked at: [groups][3][SD_GROUP_LANES] floats, their points from the middle, SD_NOWHERE
+ * where there is none; [3][stride] the middles */
+enum { SD_GROUP_LANES = 16 };
+
+typedef struct {
+  const float *arm;
+  const double *middle;
+  long stride;
+} sd_group_places;
+
 /* Degrees that there are kernels for: the polynomial is filled up with zeros. */
 #define SD_NEAR_DEGREES(_) _(6) _(7) _(8) _(11) _(14) _(17) _(20) _(24) _(29) _(39)
 
@@ -96,13 +108,6 @@ typedef struct {
  * every set */
 enum { SD_GROUP_POINTS = 12, SD_GROUP_ROW = 40 };
 
-/* What windows need of a sphere: its first point on the grid, v of sd_window.h each way, b of
- * sd_radial.h */
-typedef struct {
-  int at[3];
-  double v[3], b;
-} sd_spread_place;
-
 /* Points that stand side by side: `many` of them, from `first` on, whose windows reach size[3] points of the
  * grid from at[3] on, at most SD_RUN_WIDE each way. */
 enum { SD_RUN_WIDE = 10 };
@@ -125,17 +130,34 @@ typedef struct {
   const sd_window *window;
   /* row d: gradient of grid coordinate d, 1/length; its metric xx yy zz xy xz yz */
   double gradient[3][3], metric[6];
-  const sd_spread_place *place;
+  /* what windows need of a sphere: [n][3] its first point on the grid; [4 n] v of sd_window.h each way, and
+   * b of sd_radial.h, which has no use where there is one term or three */
+  const int (*corner)[3];
+  const void *place;
   /* one after the other, of equal radii without torques: kernels may take these as a whole */
   int runs;
   const sd_spread_run *run;
-  /* [width n] w F in order of place; or the velocities that come out */
+  /* [width n] w F in the same order; or the velocities that come out */
   void *F;
   /* its first point on the grid; numbers from row to row and from layer to layer */
   void *brick;
   int lo[3];
   long row, layer;
 } sd_spreading;
+
+/* Spheres that find their place on the grid, up to so many at a time, in its frame: their coordinates, from
+ * half a window before the first point on, are shift + G (x - origin). Not there are those that are not from
+ * lo to hi, or as far away as that many points. */
+enum { SD_STAND_MANY = 32, SD_NOT_THERE = 1000000000 };
+
+typedef struct {
+  double origin[3], gradient[3][3], shift, lo[3], hi[3], a_ref;
+  double x[3][SD_STAND_MANY], a[SD_STAND_MANY];
+  /* of all so far: are their radii a_ref? First and last of their corners, which is beyond SD_NOT_THERE where
+   * one is not there, and their sum */
+  int equal, first[3], last[3];
+  int64_t sum[3];
+} sd_standing;
 
 /* Above a wall: rows along z at one wave across it, and at the opposite one; the same row twice if
  * there is no other. */
@@ -162,6 +184,12 @@ struct sd_ewald_kernels {
   int bunch, bunch_unlike;
   /* forces alone, p->first and p->neighbor not read; NULL: vectors do not hold a group */
   void (*near_groups)(const sd_near_part *p, const sd_near_groups *g);
+  /* and who is near whom: of so many groups those that have points within a distance of the middle of group
+   * k, to near, which has room for all; returns how many */
+  long (*groups_near)(const sd_group_places *g, int k, const int *group, long many, double distance,
+                      sd_near_group *near);
+  /* corners [many] and places [4 many] of sd_spreading */
+  void (*stand)(sd_standing *s, int many, int (*corner)[3], void *place);
   void (*spread)(const sd_spreading *s);
   void (*interpolate)(const sd_spreading *s);
   /* one row along z of the three transforms, u = B (f - k (k.f)/k^2): B [half], k [3] at its

@@ -99,7 +99,31 @@ static void near_groups(const sd_near_part *p, const sd_near_groups *g)
 #undef OF_DEGREE
 }
 
+/* Points are so far from a middle as rounding of floats leaves open, too: the kernel of pairs looks again. */
+static long groups_near(const sd_group_places *g, int k, const int *group, long many, double distance,
+                        sd_near_group *near)
+{
+  const vec most = all((real) (distance * distance * (1.0 + HAIR)));
+  long found = 0;
+  for (long e = 0; e < many; e++) {
+    const long other = group[e], later = group[e + AHEAD_OF_GROUPS < many ? e + AHEAD_OF_GROUPS : e];
+    vec square = all(0.0);
+    for (long d = 0; d < 3; d++) {
+      const double *middle = g->middle + d * g->stride;
+      sd_fetch(g->arm + SD_GROUP_LANES * (3 * later + d));
+      const vec between = all((real) (middle[other] - middle[k]));
+      const vec to = load_any(g->arm + SD_GROUP_LANES * (3 * other + d)) + between;
+      square += to * to;
+    }
+    near[found] = (sd_near_group){(int) other, bits(square <= most)};
+    found += near[found].points != 0;
+  }
+  return found;
+}
+
 #define NEAR_GROUPS near_groups
+#define GROUPS_NEAR groups_near
 #else
 #define NEAR_GROUPS NULL
+#define GROUPS_NEAR NULL
 #endif

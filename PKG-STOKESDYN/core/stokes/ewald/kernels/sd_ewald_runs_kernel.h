@@ -26,11 +26,11 @@ typedef struct {
   vec v[SD_GROUP_POINTS][2];
 } run_windows;
 
-/* Windows of one point, the k-th of the run */
-INLINE void windows_of_run(const spreading *s, const sd_spread_run *run, const sd_spread_place *at, int k,
-                           run_windows *w)
+/* Windows of point i, the k-th of the run */
+INLINE void windows_of_run(const spreading *s, const sd_spread_run *run, int i, int k, run_windows *w)
 {
-  const vec u[3] = {all((real) at->v[0]), all((real) at->v[1]), all((real) at->v[2])};
+  const real *v = s->place[i];
+  const vec u[3] = {all(v[0]), all(v[1]), all(v[2])};
   vec x = load_any(s->coefficient[s->degree]), y = x, z = load_any(s->thrice[s->degree]);
   vec z1 = load_any(s->thrice[s->degree] + LANES);
   for (int m = s->degree - 1; m >= 0; m--) {
@@ -43,9 +43,9 @@ INLINE void windows_of_run(const spreading *s, const sd_spread_run *run, const s
   real *to_y = w->y[k], *to_z = w->z[k];
   store_any(w->x[k], x);
   store_any(to_y, all(0));
-  store_any(to_y + at->at[1] - run->at[1], y);
+  store_any(to_y + s->corner[i][1] - run->at[1], y);
   for (int l = 0; l < 2; l++) store_any(to_z + l * LANES, all(0));
-  to_z += 3 * (at->at[2] - run->at[2]);
+  to_z += 3 * (s->corner[i][2] - run->at[2]);
   store_any(to_z, z);
   store_any(to_z + LANES, z1);
 }
@@ -53,16 +53,16 @@ INLINE void windows_of_run(const spreading *s, const sd_spread_run *run, const s
 /* All of them, by order of the planes */
 INLINE void windows_of_all(const spreading *s, const sd_spread_run *run, run_windows *w)
 {
-  const sd_spread_place *place = s->place + run->first;
+  const int (*corner)[3] = s->corner + run->first;
   int next[SD_RUN_WIDE + 2] = {0};
-  for (int i = 0; i < run->many; i++) next[place[i].at[0] - run->at[0] + 1]++;
+  for (int i = 0; i < run->many; i++) next[corner[i][0] - run->at[0] + 1]++;
   for (int p = 0; p <= SD_RUN_WIDE; p++) w->below[p + 1] = next[p + 1] += next[p];
   w->below[0] = 0;
   for (int i = 0; i < run->many; i++) {
-    const int plane = place[i].at[0] - run->at[0], k = next[plane]++;
+    const int plane = corner[i][0] - run->at[0], k = next[plane]++;
     w->point[k] = run->first + i;
     w->plane[k] = plane;
-    windows_of_run(s, run, place + i, k, w);
+    windows_of_run(s, run, run->first + i, k, w);
   }
 }
 
@@ -70,12 +70,6 @@ INLINE void windows_of_all(const spreading *s, const sd_spread_run *run, run_win
 INLINE int first_of_plane(const spreading *s, const run_windows *w, int p)
 {
   return p < s->points ? 0 : w->below[p - s->points + 1];
-}
-
-INLINE real *corner_of_run(const spreading *s, const sd_spread_run *run)
-{
-  return s->brick + (run->at[0] - s->lo[0]) * s->layer + (run->at[1] - s->lo[1]) * s->row +
-         3L * (run->at[2] - s->lo[2]);
 }
 
 /* Rows of a plane of the grid, which are wanted soon */
@@ -99,8 +93,8 @@ INLINE vec force_along(const real *F, int skip)
 INLINE void spread_run(int rows, const spreading *s, const sd_spread_run *run, const sd_spread_run *next,
                        run_windows *w)
 {
-  real *corner = corner_of_run(s, run);
-  const real *later = corner_of_run(s, next);
+  real *corner = corner_at(s, run->at);
+  const real *later = corner_at(s, next->at);
   for (int k = 0; k < run->many; k++)
     for (int l = 0; l < 2; l++)
       w->v[k][l] = force_along(s->F + 3L * w->point[k], l * LANES) * load_any(w->z[k] + l * LANES);
@@ -125,8 +119,8 @@ INLINE void spread_run(int rows, const spreading *s, const sd_spread_run *run, c
 INLINE void interpolate_run(int rows, const spreading *s, const sd_spread_run *run, const sd_spread_run *next,
                             run_windows *w)
 {
-  const real *corner = corner_of_run(s, run);
-  const real *later = corner_of_run(s, next);
+  const real *corner = corner_at(s, run->at);
+  const real *later = corner_at(s, next->at);
   for (int k = 0; k < run->many; k++) w->v[k][0] = w->v[k][1] = all(0);
   for (int p = 0; p < run->size[0]; p++, corner += s->layer, later += s->layer) {
     fetch_plane(rows, s, later);
@@ -179,11 +173,11 @@ static void interpolate_one_run(const spreading *s, const sd_spread_run *run, co
 typedef void of_run(const spreading *s, const sd_spread_run *run, const sd_spread_run *next);
 typedef void of_points(const sd_spreading *s);
 
-/* Places stand far apart in memory: those of the next run are fetched while this one is at work. */
-static void fetch_places(const sd_spread_place *place)
+/* Places stand far apart in memory: those of the next run are fetched to their last while this one works. */
+static void fetch_places(const spreading *s, int i)
 {
-  const char *from = (const char *) place;
-  for (size_t at = 0; at < sizeof(*place) * SD_GROUP_POINTS; at += 64) sd_fetch(from + at);
+  for (int k = 0; k < 4 * SD_GROUP_POINTS + LANES; k += LANES) sd_fetch(s->place[i] + (k > 0 ? k - 1 : 0));
+  for (int k = 0; k < 3 * SD_GROUP_POINTS + LANES; k += LANES) sd_fetch(s->corner[i] + (k > 0 ? k - 1 : 0));
 }
 
 /* Points from one on up to another, which are in no run */
@@ -192,7 +186,8 @@ static void by_points(const sd_spreading *all_points, int from, int to, of_point
   sd_spreading some = *all_points;
   if (from == to) return;
   some.n = to - from;
-  some.place += from;
+  some.corner += from;
+  some.place = (const real *) some.place + 4L * from;
   some.F = (real *) some.F + (long) some.width * from;
   points(&some);
 }
@@ -204,7 +199,7 @@ static void by_runs(const sd_spreading *asked, of_run *whole, of_points *points)
   in_reals(asked, &s);
   for (int k = 0; k < asked->runs; k++) {
     const sd_spread_run *run = asked->run + k, *next = k + 1 < asked->runs ? run + 1 : run;
-    fetch_places(asked->place + next->first);
+    fetch_places(&s, next->first);
     by_points(asked, done, run->first, points);
     whole(&s, run, next);
     done = run->first + run->many;

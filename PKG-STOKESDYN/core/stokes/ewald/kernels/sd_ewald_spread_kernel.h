@@ -14,7 +14,8 @@ enum {
 /* A spreading in real numbers; points of the window up to whole vectors */
 typedef struct {
   int n, width, points, degree, lo[3];
-  const sd_spread_place *place;
+  const int (*corner)[3];
+  const real (*place)[4];
   real *F, *brick, metric[6], gradient[3][3];
   real coefficient[SD_WINDOW_TERMS][MOST_COLUMN] ALIGNED(64);
   /* along a row of the grid, where each point has three numbers: the same thrice, and which is whose */
@@ -31,6 +32,7 @@ static void in_reals(const sd_spreading *from, spreading *s)
   s->points = w->points;
   s->degree = w->degree;
   memcpy(s->lo, from->lo, sizeof(s->lo));
+  s->corner = from->corner;
   s->place = from->place;
   s->F = from->F;
   s->brick = from->brick;
@@ -93,10 +95,11 @@ INLINE int turning(int terms)
   return terms >= 3;
 }
 
-INLINE void windows_at(int directions, int terms, const spreading *s, const sd_spread_place *at, windows *w)
+/* Of sphere i */
+INLINE void windows_at(int directions, int terms, const spreading *s, int i, windows *w)
 {
   vec v[3], f[3][3];
-  for (int d = 0; d < directions; d++) v[d] = all((real) at->v[d]);
+  for (int d = 0; d < directions; d++) v[d] = all(s->place[i][d]);
   for (int k = 0; k < s->points; k += LANES) {
     window_at(s->coefficient[0] + k, MOST_COLUMN, s->degree, terms > 1, directions, v, f);
     for (int d = 0; d < directions; d++) {
@@ -159,12 +162,11 @@ INLINE vec repeated(const spreading *s, int skip, const real *from)
   return row;
 }
 
-/* LANES numbers of V_t [points][3], from `skip` on */
-INLINE void row_of_force(int terms, const spreading *s, int skip, const sd_spread_place *at, real from[4][3],
-                         vec V[4])
+/* LANES numbers of V_t [points][3] of sphere i, from `skip` on */
+INLINE void row_of_force(int terms, const spreading *s, int skip, int i, real from[4][3], vec V[4])
 {
   const real *g = s->metric;
-  const vec b = all((real) at->b), v = all((real) at->v[2]), F = repeated(s, skip, from[0]);
+  const vec b = all(s->place[i][3]), v = all(s->place[i][2]), F = repeated(s, skip, from[0]);
   vec found[1][3];
   window_at(s->thrice[0] + skip, MOST_ROW, s->degree, terms > 1, 1, &v, found);
   const vec *z = found[0];
@@ -179,22 +181,21 @@ INLINE void row_of_force(int terms, const spreading *s, int skip, const sd_sprea
   V[3] += all(2 * g[5]) * b * F * z[1];
 }
 
-/* The first point of a sphere in the brick */
-INLINE real *corner_of(const spreading *s, const sd_spread_place *at)
+/* The first point of a sphere in the brick, or of several that are taken together */
+INLINE real *corner_at(const spreading *s, const int at[3])
 {
-  return s->brick + (at->at[0] - s->lo[0]) * s->layer + (at->at[1] - s->lo[1]) * s->row +
-         3L * (at->at[2] - s->lo[2]);
+  return s->brick + (at[0] - s->lo[0]) * s->layer + (at[1] - s->lo[1]) * s->row + 3L * (at[2] - s->lo[2]);
 }
 
 /* vectors: of a chunk, the numbers from `skip` on */
-INLINE void spread_chunk(int terms, int vectors, const spreading *s, const windows *w,
-                         const sd_spread_place *at, real from[4][3], int skip)
+INLINE void spread_chunk(int terms, int vectors, const spreading *s, const windows *w, int i, real from[4][3],
+                         int skip)
 {
   const int points = s->points;
-  real *corner = corner_of(s, at) + skip;
+  real *corner = corner_at(s, s->corner[i]) + skip;
   vec v[MOST_VECTORS][4];
 #pragma GCC unroll 6
-  for (int l = 0; l < vectors; l++) row_of_force(terms, s, skip + LANES * l, at, from, v[l]);
+  for (int l = 0; l < vectors; l++) row_of_force(terms, s, skip + LANES * l, i, from, v[l]);
   for (int p = 0; p < points; p++) {
     vec A[MOST_VECTORS][3];
 #pragma GCC unroll 6
@@ -217,11 +218,10 @@ INLINE void spread_with(int terms, int vectors, int chunks, const spreading *s)
 {
   windows w;
   for (int i = 0; i < s->n; i++) {
-    const sd_spread_place *at = s->place + i;
     real from[4][3];
-    windows_at(2, terms, s, at, &w);
+    windows_at(2, terms, s, i, &w);
     strengths(terms, s, s->F + (long) s->width * i, from);
-    for (int c = 0; c < chunks; c++) spread_chunk(terms, vectors, s, &w, at, from, c * vectors * LANES);
+    for (int c = 0; c < chunks; c++) spread_chunk(terms, vectors, s, &w, i, from, c * vectors * LANES);
   }
 }
 
@@ -293,13 +293,12 @@ INLINE void interpolate_with(int terms, int vectors, int chunks, const spreading
   real S[4][MOST_ROW] ALIGNED(64) = {{0}};
   windows w;
   for (int i = 0; i < s->n; i++) {
-    const sd_spread_place *at = s->place + i;
-    windows_at(3, terms, s, at, &w);
+    windows_at(3, terms, s, i, &w);
     for (int c = 0; c < chunks; c++) {
       const int skip = c * vectors * LANES;
-      gather_chunk(terms, vectors, s, &w, corner_of(s, at) + skip, S[0] + skip);
+      gather_chunk(terms, vectors, s, &w, corner_at(s, s->corner[i]) + skip, S[0] + skip);
     }
-    force_of_rows(terms, s, &w, at->b, S, s->F + (long) s->width * i);
+    force_of_rows(terms, s, &w, s->place[i][3], S, s->F + (long) s->width * i);
   }
 }
 

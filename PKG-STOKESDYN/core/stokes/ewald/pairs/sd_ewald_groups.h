@@ -10,15 +10,42 @@
 
 SD_BEGIN_C
 
+/* Within which middles of groups are near each other: a hair more, so that rounding of these loses no pair */
+static inline double sd_ewald_groups_reach(const sd_ewald_pairs *p)
+{
+  return (p->ewald.range + 2.0 * p->groups.farthest) * (1.0 + 1e-9);
+}
+
+/* sd_group_places, while kernels that look at whole groups find who is near whom and nobody needs centres */
+static inline float *sd_ewald_groups_arms(const sd_ewald_pairs *p)
+{
+  return p->u;
+}
+
+static inline int sd_ewald_groups_is_ghost(const sd_ewald_pairs *p, const sd_groups *all, int n, int group)
+{
+  return all->first[p->groups.cells.place[group]] >= n;
+}
+
+/* Its form; -1: it has none, or is a ghost */
+static inline int sd_ewald_groups_form(const sd_ewald_pairs *p, const sd_groups *all, int n, int group)
+{
+  const int mine = all->form && !sd_ewald_groups_is_ghost(p, all, n, group);
+  return mine ? all->form[p->groups.cells.place[group]] : -1;
+}
+
 /* May these be taken by groups? */
 int sd_ewald_groups_serve(const sd_ewald_pairs *p, const sd_groups *groups);
 
-/* Rows of points by groups in order of cells, to p->sphere; of cells of before where the lists of then hold.
- * SD_OK or SD_ENOMEMORY. */
+/* Rows of points by groups in order of cells, and where they stand; in cells of before where the lists of
+ * then hold. SD_OK or SD_ENOMEMORY. */
 sd_status sd_ewald_groups_sort(sd_ewald_pairs *p, const sd_groups *groups, int n);
 
-/* The rows stand: who is near whom, and the blocks. SD_OK or SD_ENOMEMORY. */
+/* Who is near whom. SD_OK or SD_ENOMEMORY. */
 sd_status sd_ewald_groups_find(sd_ewald_pairs *p, const sd_groups *groups, int n);
+
+/* The blocks. SD_OK or SD_ENOMEMORY. */
+sd_status sd_ewald_groups_make_blocks(sd_ewald_pairs *p, const sd_groups *groups, int n);
 
 /* Those near each other, for the kernel that takes them whole */
 sd_near_groups sd_ewald_groups_near(const sd_ewald_pairs *p);

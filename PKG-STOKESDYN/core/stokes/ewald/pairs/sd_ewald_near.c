@@ -4,17 +4,6 @@
 
 #include "sd_constants.h"
 
-void sd_ewald_pairs_gather(sd_ewald_pairs *p)
-{
-  enum { AHEAD = 12 };
-  double *centre = sd_ewald_centres(p);
-  for (int k = 0; k < p->rows; k++) {
-    const long i = p->sphere[k], later = p->sphere[k + AHEAD < p->rows ? k + AHEAD : k];
-    sd_fetch(p->spheres.x + 3 * later);
-    for (int d = 0; d < 3; d++) centre[(long) d * p->rows + k] = sd_ewald_turned(p->spheres.x + 3 * i, p->turn, d);
-  }
-}
-
 long sd_ewald_pairs_near(sd_ewald_pairs *p, int row, int end, int ranges, const int *range, long many)
 {
   const double range2 = p->ewald.range * p->ewald.range, *centre = sd_ewald_centres(p);

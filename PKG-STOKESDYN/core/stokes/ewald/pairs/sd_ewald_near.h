@@ -69,7 +69,7 @@ typedef struct sd_ewald_pairs {
   /* lists are filled up to a multiple of so many, whole vectors of every set */
   int full;
   /* sd_near_part's, in one block, `bytes` a number, and of waves [width rows]; u and they hold the centres
-   * [3][rows] before, doubles */
+   * [3][rows] before, doubles, or the points of groups (sd_ewald_groups_arms) */
   size_t bytes;
   void *row, *torque_row, *u, *waves;
   double *memory;
@@ -93,9 +93,6 @@ static inline double sd_ewald_pairs_steps(const sd_ewald_pairs *p)
 {
   return 0x1p30 / p->ewald.range;
 }
-
-/* Rows to their centres, where their spheres are now */
-void sd_ewald_pairs_gather(sd_ewald_pairs *p);
 
 /* Neighbours of a bunch, rows up to `end`, among so many ranges of rows, behind the first `many` of all;
  * returns how many there are then. And the kernels' table: lengths scaled, and times 8 pi. */

@@ -46,13 +46,15 @@ static size_t numbers_of_sum(const sd_ewald_pairs *p)
   return p->width == 6 ? 8 : 4;
 }
 
-/* The last centres are read in whole vectors. */
-static int ep_make_room(sd_ewald_pairs *p, int n)
+/* The last centres are read in whole vectors. groups: that kernels look at */
+static int ep_make_room(sd_ewald_pairs *p, int n, int groups)
 {
   const size_t rows = (size_t) n + SD_EMPTY_ROWS, all = (numbers_of_sum(p) + (size_t) p->width) * p->bytes;
   const size_t centre = 3 * sizeof(double), in_rows = 8 * p->bytes * rows;
   const size_t turns = p->width == 6 ? 4 * p->bytes * rows : 0;
-  const size_t in_u = (all > centre ? all : centre) * rows + SD_FULL * sizeof(double);
+  const size_t of_rows = (all > centre ? all : centre) * rows + SD_FULL * sizeof(double);
+  const size_t of_groups = 3 * SD_GROUP_LANES * sizeof(float) * (size_t) groups;
+  const size_t in_u = of_rows > of_groups ? of_rows : of_groups;
   p->row = sd_reserve_lines(&p->memory, (in_rows + turns + in_u) / sizeof(double) + 1, &p->room);
   if (!p->row || !sd_reserve(&p->sphere, sizeof(int), rows, &p->sphere_room) ||
       !sd_reserve(&p->target, sizeof(int), rows, &p->target_room))
@@ -78,18 +80,40 @@ static sd_status sort_spheres(sd_ewald_pairs *p, int n, int n_all)
   return SD_OK;
 }
 
-static void pairs_fill_rows(sd_ewald_pairs *p, int n_all)
+/* The unit of lengths in rows, and whether all radii are a_ref */
+static void measure_radii(sd_ewald_pairs *p, int n_all)
 {
   double largest = 0.0;
-  p->equal = 1;
+  int unlike = 0;
   for (int i = 0; i < n_all; i++) {
     const double a = p->spheres.a[i];
-    if (!(a > 0.0)) continue;
     largest = a > largest ? a : largest;
-    p->equal &= a == p->ewald.a_ref;
+    unlike |= a > 0.0 && a != p->ewald.a_ref;
   }
+  p->equal = !unlike;
   p->scale = largest > 0.0 ? ldexp(1.0, -ilogb(largest)) : 1.0;
-  p->numbers->stand(p);
+}
+
+/* Spheres may be anywhere in memory: those of the next rows are fetched while these are at work. */
+static void fetch_spheres(const sd_ewald_pairs *p, int begin, int end)
+{
+  for (int k = begin; k < end && k < p->rows; k++) {
+    const long i = p->sphere[k];
+    sd_fetch(p->spheres.x + 3 * i);
+    sd_fetch(p->spheres.x + 3 * i + 2);
+    sd_fetch(p->spheres.a + i);
+    sd_fetch(p->spheres.w + i);
+  }
+}
+
+static void stand_rows(sd_ewald_pairs *p)
+{
+  enum { TOGETHER = 12 };
+  for (int begin = 0, end = 0; end < p->rows || begin == 0; begin += TOGETHER) {
+    end = begin + TOGETHER < p->rows ? begin + TOGETHER : p->rows;
+    fetch_spheres(p, end, end + TOGETHER);
+    p->numbers->stand(p, begin, end);
+  }
 }
 
 /* --- neighbours --- */
@@ -156,16 +180,18 @@ sd_status sd_ewald_pairs_place(sd_ewald_pairs *p, const sd_spheres *s, const sd_
   p->spheres = *s;
   p->turn = turn;
   if (!grouped) p->groups.reach = 0.0; /* the rows will be others */
-  if (!ep_make_room(p, n_all)) return SD_ENOMEMORY;
-  const sd_status status = grouped ? sd_ewald_groups_sort(p, groups, n) : sort_spheres(p, n, n_all);
-  if (status != SD_OK) return status;
-  pairs_fill_rows(p, n_all);
-  p->groups.own = 0;
   p->by_groups = grouped && p->kernels->near_groups;
+  if (!ep_make_room(p, n_all, p->by_groups ? groups->n : 0)) return SD_ENOMEMORY;
+  measure_radii(p, n_all);
+  sd_status status = grouped ? sd_ewald_groups_sort(p, groups, n) : sort_spheres(p, n, n_all);
+  if (status != SD_OK) return status;
+  if (!grouped) stand_rows(p);
+  p->groups.own = 0;
   if (!p->by_groups && (!sd_reserve(&p->begin, sizeof(int), (size_t) p->rows + 1, &p->begin_room) ||
                         !sd_reserve(&p->first, sizeof(long), (size_t) p->rows + 1, &p->first_room)))
     return SD_ENOMEMORY;
-  return grouped ? sd_ewald_groups_find(p, groups, n) : find_bunches(p, n);
+  status = grouped ? sd_ewald_groups_find(p, groups, n) : find_bunches(p, n);
+  return status == SD_OK && grouped ? sd_ewald_groups_make_blocks(p, groups, n) : status;
 }
 
 /* --- product --- */

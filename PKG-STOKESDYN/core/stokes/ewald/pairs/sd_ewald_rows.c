@@ -13,17 +13,12 @@
 
 /* --- places --- */
 
-/* Rows are in order of cells, and spheres anywhere in memory: what one has there is fetched so many rows before
- * it is wanted. */
-enum { AHEAD = 12 };
-
 /* unit: of lengths, as many to 1 */
 static inline void put_place(double unit, real *row, const double *x)
 {
 #ifdef SD_SINGLE
   for (int d = 0; d < 3; d++) {
-    const double steps = x[d] * unit, turn = 0x1p32;
-    const uint32_t whole = (uint32_t) sd_whole_below(steps - turn * (double) sd_whole_below(steps / turn) + 0.5);
+    const uint32_t whole = (uint32_t) sd_whole_below(x[d] * unit + 0.5); /* modulo 2^32 */
     memcpy(row + d, &whole, sizeof(whole));
   }
 #else
@@ -31,26 +26,27 @@ static inline void put_place(double unit, real *row, const double *x)
 #endif
 }
 
-static void rows_stand(sd_ewald_pairs *p)
+static void rows_stand(sd_ewald_pairs *p, long begin, long end)
 {
   real *row = p->row, *turn = p->torque_row;
   const sd_spheres s = p->spheres;
   const double scale = p->scale, unit = sizeof(real) == sizeof(float) ? sd_ewald_pairs_steps(p) : scale;
-  for (long k = 0; k < p->rows; k++) {
-    const long i = p->sphere[k], later = p->sphere[k + AHEAD < p->rows ? k + AHEAD : k];
-    sd_fetch(s.x + 3 * later);
-    sd_fetch(s.x + 3 * later + 2);
-    sd_fetch(s.a + later);
-    sd_fetch(s.w + later);
+  for (long k = begin; k < end; k++) {
+    const long i = p->sphere[k];
     put_place(unit, row + 8 * k, s.x + 3 * i);
-    row[8 * k + 3] = (real) (s.a[i] * scale);
+    row[8 * k + 3] = (real) ((p->equal ? p->ewald.a_ref : s.a[i]) * scale);
     row[8 * k + 7] = (real) s.w[i];
   }
+  if (end < p->rows) return;
   for (long d = 0; d < 8 * SD_EMPTY_ROWS; d++) row[8L * p->rows + d] = (real) (d % 8 < 3 ? SD_NOWHERE : 0.0);
   for (long d = 0; d < 4 * SD_EMPTY_ROWS && turn; d++) turn[4L * p->rows + d] = 0;
 }
 
 /* --- forces --- */
+
+/* Rows are in order of cells, and spheres anywhere in memory: what one has there is fetched so many rows before
+ * it is wanted. */
+enum { AHEAD = 12 };
 
 static inline void fetch_ahead(int m, const double *numbers)
 {

@@ -9,8 +9,9 @@
 #define SD_NOWHERE 1e16
 
 struct sd_ewald_rows {
-  /* where the spheres stand, their radii, and w in the last number of a row */
-  void (*stand)(sd_ewald_pairs *p);
+  /* where the spheres of rows begin ... end - 1 stand, their radii, and w in the last number of a row; those
+   * of nothing stand behind the last of all */
+  void (*stand)(sd_ewald_pairs *p, long begin, long end);
   /* unit w F into the rows, and sums of w F over this rank; the rest as in sd_ewald_pairs.h */
   void (*load)(const sd_ewald_pairs *p, int n, const double *F, const double *ghosts, double *sums);
   void (*of_targets)(const sd_ewald_pairs *p, void *waves);

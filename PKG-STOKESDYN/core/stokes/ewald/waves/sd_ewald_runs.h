@@ -16,9 +16,8 @@ typedef struct {
   size_t room;
 } sd_ewald_runs;
 
-/* Of n spheres sphere[], which stand at place[], with windows of so many points. SD_OK or SD_ENOMEMORY. */
-sd_status sd_ewald_runs_find(sd_ewald_runs *r, int n, const int *sphere, const sd_spread_place *place,
-                             int points);
+/* Of n spheres sphere[], whose windows of so many points begin at corner[]. SD_OK or SD_ENOMEMORY. */
+sd_status sd_ewald_runs_find(sd_ewald_runs *r, int n, const int *sphere, const int (*corner)[3], int points);
 
 void sd_ewald_runs_free(sd_ewald_runs *r);
 

@@ -1,5 +1,6 @@
 #include "sd_ewald_waves.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,6 +40,15 @@ static void turn_integers(int *v, int turn)
 {
   const int old[3] = {v[0], v[1], v[2]};
   for (int d = 0; d < 3; d++) v[d] = old[(d + turn) % 3];
+}
+
+/* Numbers k, k + 1, k + 2 of memory whose numbers have so many bytes */
+static void turn_row(void *rows, size_t bytes, long k, int turn)
+{
+  double v[3];
+  for (int d = 0; d < 3; d++) v[d] = sd_number(rows, bytes, k + d);
+  turn_numbers(v, turn);
+  for (int d = 0; d < 3; d++) sd_put_number(rows, bytes, k + d, v[d]);
 }
 
 static void turn_frame(sd_ewald_waves *w, int turn)
@@ -133,6 +143,7 @@ void sd_ewald_waves_free(sd_ewald_waves *w)
 {
   sd_wave_free(&w->wave);
   sd_grid_free(&w->grid);
+  free(w->corner);
   free(w->place);
   sd_ewald_runs_free(&w->runs);
   memset(w, 0, sizeof(*w));
@@ -146,80 +157,87 @@ void sd_ewald_waves_stand(sd_ewald_waves *w, const sd_ewald_box *box)
   turn_numbers(w->ewald.box.origin, w->turn);
 }
 
-/* Coordinates in grid spacings, P/2 beyond the first point of an open box */
-static void on_grid(const sd_ewald_waves *w, const double *x, double *s)
+/* Coordinates in grid spacings, P/2 beyond the first point of an open box; there within the box, whose tables know no
+ * larger distance, but for rounding. */
+static sd_standing standing_of(const sd_ewald_waves *w)
 {
   const sd_ewald_box *b = &w->ewald.box;
+  sd_standing s = {.shift = b->periodic ? -0.5 * w->ewald.points : 0.0, .a_ref = w->ewald.a_ref, .equal = 1};
+  memcpy(s.gradient, w->spreading.gradient, sizeof(s.gradient));
   for (int d = 0; d < 3; d++) {
-    s[d] = b->periodic ? 0.0 : 0.5 * w->ewald.points;
-    for (int c = 0; c < 3; c++) s[d] += w->spreading.gradient[d][c] * (x[c] - b->origin[c]);
+    const double spare = 1e-9 * b->edge[d];
+    s.origin[d] = b->origin[d];
+    s.lo[d] = b->periodic ? -INFINITY : b->origin[d] - spare;
+    s.hi[d] = b->periodic ? INFINITY : b->origin[d] + b->edge[d] + spare;
+    s.first[d] = INT_MAX;
+    s.last[d] = INT_MIN;
   }
+  return s;
 }
 
-/* Within an open box, whose tables know no larger distance; but for rounding */
-static int wv_inside(const sd_ewald_box *b, double x, int d)
-{
-  const double spare = 1e-9 * b->edge[d];
-  return x >= b->origin[d] - spare && x <= b->origin[d] + b->edge[d] + spare;
-}
-
-/* Along d, where they would fill more than a period, within half a period of their mean */
-static void keep_together(sd_ewald_waves *w, int d, double mean, int *lo, int *hi)
-{
-  const int period = w->ewald.grid[d], points = w->ewald.points;
-  if (!w->ewald.box.periodic || *hi - *lo < period + points) return;
-  const double begin = floor(mean - 0.5 * period);
-  for (int i = 0; i < w->n; i++) {
-    int *at = w->place[i].at + d;
-    *at -= period * (int) sd_whole_below((*at - begin) / period);
-    if (i == 0 || *at < *lo) *lo = *at;
-    if (i == 0 || *at + points > *hi) *hi = *at + points;
-  }
-}
-
-/* They stand as they are given, whatever their order: so do ranks' bricks. */
-static int find_places(sd_ewald_waves *w, const sd_spheres *spheres, int *brick)
+static void find_places(sd_ewald_waves *w, const sd_spheres *spheres, sd_standing *s)
 {
   enum { AHEAD = 12 }; /* spheres stand anywhere in memory */
-  const sd_ewald_box *box = &w->ewald.box;
-  const int points = w->ewald.points;
-  double mean[3] = {0.0};
-  int hi[3] = {0}, *lo = brick, sound = 1;
-  for (int i = 0; i < w->n && sound; i++) {
-    const int j = w->sphere[i], later = w->sphere[i + AHEAD < w->n ? i + AHEAD : i];
-    sd_spread_place *p = w->place + i;
-    sd_fetch(spheres->x + 3 * (long) later);
-    sd_fetch(spheres->a + later);
-    double s[3];
-    double x[3] = {spheres->x[3 * (long) j], spheres->x[3 * (long) j + 1],
-                   spheres->x[3 * (long) j + 2]};
-    turn_numbers(x, w->turn);
-    on_grid(w, x, s);
-    for (int d = 0; d < 3; d++) {
-      sound = sound && fabs(s[d]) < 1e9;
-      if (!sound) break;
-      const double first = (double) sd_whole_below(s[d] - 0.5 * points);
-      p->at[d] = (int) first + 1;
-      mean[d] += (double) p->at[d] / w->n;
-      p->v[d] = 2.0 * (s[d] - 0.5 * points - first) - 1.0;
-      if (!box->periodic) sound = sound && wv_inside(box, x[d], d);
-      if (i == 0 || p->at[d] < lo[d]) lo[d] = p->at[d];
-      if (i == 0 || p->at[d] + points > hi[d]) hi[d] = p->at[d] + points;
+  const int to[3] = {(3 - w->turn) % 3, (4 - w->turn) % 3, (5 - w->turn) % 3};
+  for (int begin = 0; begin < w->n; begin += SD_STAND_MANY) {
+    const int many = w->n - begin < SD_STAND_MANY ? w->n - begin : SD_STAND_MANY;
+    for (int k = 0; k < many; k++) {
+      const int i = begin + k;
+      const long j = w->sphere[i], later = w->sphere[i + AHEAD < w->n ? i + AHEAD : i];
+      sd_fetch(spheres->x + 3 * later);
+      sd_fetch(spheres->a + later);
+      for (int d = 0; d < 3; d++) s->x[to[d]][k] = spheres->x[3 * j + d];
+      s->a[k] = spheres->a[j];
     }
-    p->b = sd_ewald_b(&w->ewald, spheres->a[j]);
+    w->kernels->stand(s, many, w->corner + begin, sd_at_number(w->place, w->kernels->bytes, 4L * begin));
   }
-  for (int d = 0; d < 3 && sound; d++) keep_together(w, d, mean[d], lo + d, hi + d);
-  for (int d = 0; d < 3; d++) brick[3 + d] = sound && w->n > 0 ? hi[d] - lo[d] : 0;
-  return sound;
+}
+
+/* From lo to end - 1 are the first points of their windows: where they would fill more than a period with these, all go
+ * within half a period of their mean. As they are given, whatever their order: so do ranks' bricks. */
+static void keep_together(sd_ewald_waves *w, const sd_standing *s, int *lo, int *end)
+{
+  int all = 1, begin[3];
+  for (int d = 0; d < 3; d++) {
+    const int period = w->ewald.grid[d];
+    begin[d] = lo[d] = s->first[d];
+    end[d] = s->last[d] + 1;
+    if (!w->ewald.box.periodic || end[d] - lo[d] <= period) continue;
+    all = 0;
+    begin[d] = (int) floor((double) s->sum[d] / w->n - 0.5 * period);
+    end[d] = begin[d] + period;
+    lo[d] = end[d] - 1;
+  }
+  int last[3] = {begin[0], begin[1], begin[2]};
+  for (int i = 0; i < w->n && !all; i++)
+    for (int d = 0; d < 3; d++) {
+      int *at = w->corner[i] + d;
+      if (*at < begin[d] || *at >= end[d])
+        *at -= w->ewald.grid[d] * (int) sd_whole_below((double) (*at - begin[d]) / w->ewald.grid[d]);
+      lo[d] = *at < lo[d] ? *at : lo[d];
+      last[d] = *at > last[d] ? *at : last[d];
+    }
+  for (int d = 0; d < 3 && !all; d++) end[d] = last[d] + 1;
 }
 
 sd_status sd_ewald_waves_find(sd_ewald_waves *w, const sd_spheres *s, const int *sphere, int n,
                               int *brick)
 {
-  if (!sd_reserve(&w->place, sizeof(sd_spread_place), (size_t) n, &w->room)) return SD_ENOMEMORY;
+  memset(brick, 0, 6 * sizeof(int));
+  if (!sd_reserve(&w->corner, sizeof(*w->corner), (size_t) n, &w->corner_room) ||
+      !sd_reserve(&w->place, w->kernels->bytes, 4 * (size_t) n, &w->place_room))
+    return SD_ENOMEMORY;
   w->sphere = sphere;
   w->n = n;
-  return find_places(w, s, brick) ? SD_OK : SD_ENOTFINITE;
+  sd_standing here = standing_of(w);
+  find_places(w, s, &here);
+  w->equal = here.equal;
+  for (int d = 0; d < 3; d++)
+    if (here.last[d] > SD_NOT_THERE) return SD_ENOTFINITE;
+  int end[3] = {0};
+  if (n > 0) keep_together(w, &here, brick, end);
+  for (int d = 0; d < 3 && n > 0; d++) brick[3 + d] = end[d] + w->ewald.points - 1 - brick[d];
+  return SD_OK;
 }
 
 /* How much further must the frame turn for slabs along which most of the bricks is at home? The first
@@ -246,8 +264,8 @@ static sd_status turn_by(sd_ewald_waves *w, int turn, int *bricks)
   const sd_world world = w->grid.world;
   for (int k = 0; k < 2 * w->grid.ranks; k++) turn_integers(bricks + 3 * k, turn);
   for (int i = 0; i < w->n; i++) {
-    turn_integers(w->place[i].at, turn);
-    turn_numbers(w->place[i].v, turn);
+    turn_integers(w->corner[i], turn);
+    turn_row(w->place, w->kernels->bytes, 4L * i, turn);
   }
   turn_frame(w, turn);
   return make_grid(w, &world);
@@ -257,21 +275,20 @@ static sd_status turn_by(sd_ewald_waves *w, int turn, int *bricks)
 static sd_status find_terms(sd_ewald_waves *w)
 {
   const sd_grid *g = &w->grid;
-  int equal = 1;
-  for (int i = 0; i < w->n; i++) equal = equal && w->place[i].b == 0.0;
   sd_spreading *s = &w->spreading;
   const double *m = s->metric;
   const int oblique = m[3] != 0.0 || m[4] != 0.0 || m[5] != 0.0;
   s->n = w->n;
   s->width = w->width;
   s->window = &w->window;
-  s->terms = equal ? (w->width == 6 ? 3 : 1) : w->width == 6 || oblique ? 4 : 2;
+  s->terms = w->equal ? (w->width == 6 ? 3 : 1) : w->width == 6 || oblique ? 4 : 2;
+  s->corner = (const int(*)[3]) w->corner;
   s->place = w->place;
   s->brick = g->brick;
   memcpy(s->lo, g->lo, sizeof(s->lo));
   s->row = g->row;
   s->layer = g->layer;
-  const sd_status status = s->terms == 1 ? sd_ewald_runs_find(&w->runs, w->n, w->sphere, w->place, w->window.points)
+  const sd_status status = s->terms == 1 ? sd_ewald_runs_find(&w->runs, w->n, w->sphere, s->corner, w->window.points)
                                          : SD_OK;
   s->runs = s->terms == 1 ? w->runs.n : 0;
   s->run = w->runs.run;
@@ -321,7 +338,7 @@ sd_status sd_ewald_waves_place_whole(sd_ewald_waves *w)
       bricks[6 * k + 3 + d] = e->grid[d] + (e->box.periodic ? e->points - 1 : 0);
   for (int i = 0; i < w->n && e->box.periodic; i++)
     for (int d = 0; d < 3; d++) {
-      int *at = w->place[i].at + d;
+      int *at = w->corner[i] + d;
       *at = (*at % e->grid[d] + e->grid[d]) % e->grid[d];
     }
   const sd_status status = sd_grid_place(&w->grid, bricks);
@@ -354,13 +371,8 @@ void sd_ewald_waves_add(const sd_ewald_waves *w, const sd_spheres *s, const void
 /* Vectors of the rows in the frame that is `turn` further */
 static void turn_rows(const sd_ewald_waves *w, void *rows, int turn)
 {
-  const size_t bytes = w->kernels->bytes;
   const long vectors = (long) w->width / 3 * w->n;
-  for (long k = 0; k < vectors && turn % 3; k++) {
-    double v[3];
-    for (int d = 0; d < 3; d++) v[d] = sd_number(rows, bytes, 3 * k + d);
-    for (int d = 0; d < 3; d++) sd_put_number(rows, bytes, 3 * k + d, v[(d + turn) % 3]);
-  }
+  for (long k = 0; k < vectors && turn % 3; k++) turn_row(rows, w->kernels->bytes, 3 * k, turn);
 }
 
 sd_status sd_ewald_waves_convolve(sd_ewald_waves *w, void *rows)

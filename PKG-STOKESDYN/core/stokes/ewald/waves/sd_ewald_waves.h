@@ -30,13 +30,15 @@ typedef struct {
   sd_wave wave;
   sd_grid grid;
   sd_spreading spreading;
-  /* [n] which spheres, where they stand */
+  /* [n] which spheres, where they stand (sd_spreading); are all radii a_ref? */
   int n;
   const int *sphere;
-  sd_spread_place *place;
+  int (*corner)[3];
+  void *place;
+  int equal;
   /* those of them that stand side by side (sd_ewald_runs.h) */
   sd_ewald_runs runs;
-  size_t room;
+  size_t corner_room, place_room;
 } sd_ewald_waves;
 
 /* Tables for a splitting, in the frame of the last one. SD_OK or SD_ENOMEMORY. */
