@@ -16,7 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { RANKS_SPHERES = 400, RANKS_WIDEST = 64, RANKS_MOST = 4, RANKS_MESSAGE = 2000000, RANKS_SUM = 128 };
+enum { RANKS_SPHERES = 400, RANKS_WIDEST = 64, RANKS_MOST = 4, RANKS_MESSAGE = 2000000, RANKS_SUM = 4096 };
 
 /* What all processes see: rows by the number of their sphere */
 typedef struct {

@@ -12,6 +12,7 @@
 #include "sd_ewald_waves.h"
 #include "sd_rank_spheres.h"
 #include "sd_room.h"
+#include "sd_slab_rest.h"
 
 typedef struct {
   /* what the tables are made for */
@@ -22,6 +23,7 @@ typedef struct {
   sd_ewald_image_pairs images[2];
   sd_ewald_waves waves;
   sd_columns columns;
+  sd_slab_rest rest;
   sd_rank_spheres here;
   /* [here.own] heights of this rank's spheres with radius */
   double *height;
@@ -51,6 +53,7 @@ static sd_status slab_make_tables(slab *s, const sd_mobility_scene *scene)
     status = sd_columns_create(&s->columns, how, columns, grid->own[SD_SHARED_Y],
                                grid->own[SD_SHARED_Z]);
   if (status == SD_OK) status = sd_grid_add_sweep(&s->waves.grid, sd_columns_apply, &s->columns);
+  if (status == SD_OK) status = sd_slab_rest_create(&s->rest, how);
   s->ready = status == SD_OK;
   return status;
 }
@@ -117,12 +120,13 @@ static sd_status place(void *state, const sd_mobility_scene *scene)
 
 /* --- product --- */
 
-/* Sums over all spheres of F, z F and (z^2 + 2 A) F along the slab, A = a^2/6: [2][3] */
-static sd_status slab_sums_of(const slab *s, const double *F, double *sums)
+/* Sums over all spheres of F, z F and (z^2 + 2 A) F along the slab, A = a^2/6: [2][3]; and those of the rest */
+static sd_status slab_sums_of(slab *s, const double *F, double *sums)
 {
   const sd_rank_spheres *here = &s->here;
   const int axis = s->slab.walls.wall->axis;
   memset(sums, 0, 6 * sizeof(double));
+  sd_slab_rest_clear(&s->rest);
   for (int i = 0; i < here->own; i++) {
     const long j = here->sphere[i];
     const double z = s->height[i], a = here->spheres.a[j];
@@ -132,8 +136,12 @@ static sd_status slab_sums_of(const slab *s, const double *F, double *sums)
       sums[3 * d + 1] += z * f;
       sums[3 * d + 2] += (z * z + a * a / 3.0) * f;
     }
+    double weighed[3];
+    for (int d = 0; d < 3; d++) weighed[d] = here->spheres.w[j] * F[3 * j + d];
+    sd_slab_rest_add(&s->rest, z, a, weighed);
   }
-  return sd_world_sum(&s->world, sums, 6);
+  const sd_status status = sd_world_sum(&s->world, sums, 6);
+  return status == SD_OK ? sd_world_sum(&s->world, s->rest.sums, s->rest.numbers) : status;
 }
 
 /* The mean along the slab: that of the taller periodic box taken away, which has
@@ -160,6 +168,19 @@ static void add_means(const slab *s, const double *sums, double *u)
   }
 }
 
+/* What the near part leaves out beyond its range */
+static void add_rest(slab *s, double *u)
+{
+  const sd_rank_spheres *here = &s->here;
+  sd_slab_rest_sum(&s->rest);
+  for (int i = 0; i < here->own; i++) {
+    const long j = here->sphere[i];
+    double v[3] = {0.0};
+    sd_slab_rest_take(&s->rest, s->height[i], here->spheres.a[j], v);
+    for (int d = 0; d < 3; d++) u[3 * j + d] += here->spheres.w[j] * v[d];
+  }
+}
+
 static sd_status slab_apply(void *state, const double *F, double *u)
 {
   slab *s = state;
@@ -181,6 +202,7 @@ static sd_status slab_apply(void *state, const double *F, double *u)
   for (int w = 0; w < sd_slab_many_walls(&s->slab.walls); w++)
     sd_ewald_image_pairs_apply(s->images + w, here->n, F, here->ghosts, u);
   add_means(s, sums, u);
+  add_rest(s, u);
   return SD_OK;
 }
 
@@ -190,6 +212,7 @@ static void slab_release(void *state)
   sd_ewald_pairs_free(&s->pairs);
   for (int w = 0; w < 2; w++) sd_ewald_image_pairs_free(s->images + w);
   sd_columns_free(&s->columns);
+  sd_slab_rest_free(&s->rest);
   sd_ewald_waves_free(&s->waves);
   sd_rank_spheres_free(&s->here);
   free(s->height);

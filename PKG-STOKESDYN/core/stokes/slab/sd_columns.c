@@ -5,8 +5,6 @@
 #include <string.h>
 
 #include "sd_constants.h"
-#include "sd_radial.h"
-#include "sd_tensor.h"
 #include "sd_window.h"
 
 enum { W = SD_COLUMN_WAVES };
@@ -15,7 +13,6 @@ void sd_columns_free(sd_columns *c)
 {
   free(c->numbers);
   free(c->corner);
-  for (int d = 0; d < 2; d++) free(c->tail[d]);
   for (int d = 0; d < 3; d++) free(c->corner_mean[d]);
   free(c->forces);
   free(c->work);
@@ -32,7 +29,6 @@ static int allocate(sd_columns *c, int rows)
   c->corner = calloc(groups * sums * SD_CORNERS * W + 1, number);
   c->forces = malloc(number * 3 * planes);
   c->work = malloc(number * 12 * planes * W);
-  for (int d = 0; d < 2; d++) ok = (c->tail[d] = calloc(planes, number)) && ok;
   for (int d = 0; d < 3; d++) ok = (c->corner_mean[d] = calloc(sums, number)) && ok;
   return ok && c->numbers && c->corner && c->forces && c->work;
 }
@@ -152,55 +148,12 @@ static void fill_wave(sd_columns *c, sd_slab_corner *corner, int y, int z, int e
     fill_corner(corner, hypot(k[0], k[1]), corner_of(c, group) + at);
 }
 
-/* Simpson's rule over [from, from + 8/xi] in so many steps, of
- *   r A + B r/2,   B/(2 r),   r A,   B/r
- * A 1 + B hh: the tensor of two spheres a_ref less their D */
-static void integrals_of_rest(const sd_ewald *e, double from, int steps, double integral[4])
-{
-  const double dr = 8.0 / e->xi / steps, a2 = e->a_ref * e->a_ref;
-  memset(integral, 0, 4 * sizeof(double));
-  for (int s = 0; s <= steps; s++) {
-    const double r = from + s * dr, unit = 1.0 / (8.0 * SD_PI * r), reach = 2.0 * a2 / (r * r);
-    const double weight = (s == 0 || s == steps ? 1.0 : s % 2 ? 4.0 : 2.0) * dr / 3.0;
-    double D[SD_RADIALS];
-    sd_radial(e, r, D);
-    const double A = unit * (1.0 + reach / 3.0) - D[SD_I0],
-                 B = unit * (1.0 - reach) - r * r * D[SD_J0];
-    integral[0] += weight * (r * A + 0.5 * r * B);
-    integral[1] += weight * 0.5 * B / r;
-    integral[2] += weight * r * A;
-    integral[3] += weight * B / r;
-  }
-}
-
-/* Between planes at a distance d the mean over the plane of what is beyond the range R of the
- * near part,
- *   along   2 pi int (r A + B (r^2 - d^2)/(2 r)) dr,   across   2 pi int (r A + B d^2/r) dr,
- * from max(R, d) on.
- * Up to R, where most of it is, all planes have the same integrals. */
-static void fill_tail(sd_columns *c)
-{
-  const sd_ewald *e = &c->slab.ewald;
-  double within[4], beyond[4];
-  integrals_of_rest(e, e->range, 400, within);
-  for (int p = 0; p < e->slab.planes; p++) {
-    const double d = p * c->slab.spacing;
-    if (d > e->range + 8.0 / e->xi) break;
-    if (d > e->range) integrals_of_rest(e, d, 40, beyond);
-    const double *of = d > e->range ? beyond : within;
-    c->tail[0][p] = 2.0 * SD_PI * (of[0] - d * d * of[1]);
-    c->tail[1][p] = 2.0 * SD_PI * (of[2] + d * d * of[3]);
-  }
-}
-
 static sd_status columns_make_tables(sd_columns *c, const int *y, const int *z, sd_slab_corner *corner)
 {
   if (!allocate(c, y[1] - y[0])) return SD_ENOMEMORY;
   for (int row = y[0]; row < y[1]; row++)
     for (int m = z[0]; m < z[1]; m++) fill_wave(c, corner, row, m, y[1]);
-  if (!c->mean) return SD_OK;
-  fill_tail(c);
-  if (c->corner_sums)
+  if (c->mean && c->corner_sums)
     sd_slab_corner_of_mean(corner, c->corner_mean[0], c->corner_mean[1], c->corner_mean[2]);
   return SD_OK;
 }
@@ -237,17 +190,13 @@ static int plane_at(const sd_columns *c, int p)
   return c->slab.walls.wall->sign > 0 ? p : c->slab.ewald.slab.planes - 1 - p;
 }
 
-/* Velocities u [planes] at k = 0 in one direction: what the range cuts off, and corners; across:
- * is the direction */
-static void columns_mean_of(const sd_columns *c, int across, double unit, double over, const double *f,
-                            double *u, long stride)
+/* Velocities u [planes] at k = 0 in one direction, of corners; across: is the direction */
+static void columns_mean_of(const sd_columns *c, int across, double unit, const double *f, double *u, long stride)
 {
   const int planes = c->slab.ewald.slab.planes, walls = sd_slab_many_walls(&c->slab.walls);
-  const double *tail = c->tail[across], *corner = c->corner_mean[across];
+  const double *corner = c->corner_mean[across];
   for (int i = 0; i < planes; i++) {
     double sum = 0.0;
-    for (int j = 0; j < planes; j++) sum += tail[abs(i - j)] * f[j];
-    sum *= over;
     for (int w = 0; w < walls; w++) {
       const int mi = w ? planes - 1 - i : i;
       for (int j = 0; j < c->corner_planes && mi + j < c->corner_sums; j++) {
@@ -276,10 +225,9 @@ static void put_mean(sd_columns *c, double *const *fields)
 {
   const sd_ewald *e = &c->slab.ewald;
   const int planes = e->slab.planes, none[2] = {0};
-  const double k[2] = {0.0}, w = sd_window_transform(e->points, e->beta, 0.0);
+  const double k[2] = {0.0};
   for (int d = 0; d < 3; d++)
-    columns_mean_of(c, d == 0, unit_of(c, none, k), 1.0 / (w * w), c->forces + d * planes, fields[d],
-                    2L * c->depth);
+    columns_mean_of(c, d == 0, unit_of(c, none, k), c->forces + d * planes, fields[d], 2L * c->depth);
 }
 
 void sd_columns_apply(void *ctx, int y, double *const *fields)

@@ -8,9 +8,8 @@
  *   u = sum of t_n times combinations of m_n   (sd_slab_wave.h has W, c = shift)
  *
  * exact but for the windows' aliasing; and at each wall a small matrix of planes, since the near
- * part takes images filtered (SD_CORNERS). Waves k = 0 have that corner alone, and the mean of
- * what the near part cuts off at its range; what walls do to the mean is summed over the spheres
- * (sd_mobility_slab.c). */
+ * part takes images filtered (SD_CORNERS). Waves k = 0 have that corner alone; what walls do to
+ * the mean is summed over the spheres (sd_mobility_slab.c). */
 #ifndef SD_COLUMNS_H
 #define SD_COLUMNS_H
 
@@ -35,9 +34,8 @@ typedef struct {
   /* by y and group: [SD_COLUMN_NUMBERS][SD_COLUMN_WAVES];
    * [corner_sums][SD_CORNERS][SD_COLUMN_WAVES] */
   double *numbers, *corner;
-  /* k = 0: by difference of planes, along and across; by sum of planes, along, across, and times
-   * z z' */
-  double *tail[2], *corner_mean[3];
+  /* k = 0: by sum of planes, along, across, and times z z' */
+  double *corner_mean[3];
   /* [3 planes] forces at k = 0; work of the kernels */
   double *forces, *work;
 } sd_columns;

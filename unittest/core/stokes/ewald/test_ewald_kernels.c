@@ -130,6 +130,28 @@ static void spreading_and_interpolation_agree(void **state)
   free(brick);
 }
 
+/* Wherever a sphere stands its points add up to the same, and their slopes to 0. By the Kaiser-Bessel function alone
+ * four points differ by 6e-4. */
+static void points_of_a_window_add_up(void **state)
+{
+  (void) state;
+  for (int points = 4; points <= 16; points++) {
+    sd_window w;
+    sd_window_fit(points, 2.25 * points, 1e-9, &w);
+    const double whole = sd_window_transform(points, 2.25 * points, 0.0);
+    for (double v = -1.0; v <= 1.0; v += 0.125) {
+      double sum = 0.0, slope = 0.0;
+      for (int k = 0; k < points; k++)
+        for (int m = w.degree; m >= 0; m--) {
+          sum += w.coefficient[m][k] * pow(v, m);
+          slope += m > 0 ? m * w.coefficient[m][k] * pow(v, m - 1) : 0.0;
+        }
+      CHECK_NEAR(sum, whole, 1e-11);
+      CHECK_NEAR(slope, 0.0, 1e-9);
+    }
+  }
+}
+
 /* Of equal spheres with torques the second term is nothing, in a tilted box too. */
 static void three_terms_do_for_equal_spheres_with_torques(void **state)
 {
@@ -406,6 +428,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(near_parts_agree),
       cmocka_unit_test(spreading_and_interpolation_agree),
+      cmocka_unit_test(points_of_a_window_add_up),
       cmocka_unit_test(three_terms_do_for_equal_spheres_with_torques),
       cmocka_unit_test(near_parts_of_floats_are_those_of_doubles),
       cmocka_unit_test(windows_of_floats_are_those_of_doubles),

@@ -53,6 +53,14 @@ static double difference(const scene *s, int width, const double *F, const doubl
   return sqrt(off / bare);
 }
 
+/* Do floats hold what equal forces make of an open box, where they lose 4e-7 of some N a/L? */
+static int hold_common_flow(const scene *s, double tolerance)
+{
+  double squares = 0.0;
+  for (int i = 0; i < s->n; i++) squares += s->a[i] * s->a[i] / s->n;
+  return s->box.periodic || 4e-7 * s->n * sqrt(squares) / cbrt(sd_ewald_volume(&s->box)) <= 0.5 * tolerance;
+}
+
 /* Far below the tolerance; single: does the rule choose floats? */
 static void same_digits_in_box(const scene *s, int single)
 {
@@ -61,7 +69,8 @@ static void same_digits_in_box(const scene *s, int single)
       const double tolerance = pow(10.0, -digits);
       double F[6 * MOST], u[6 * MOST], v[6 * MOST];
       forces(s, width, 7, F);
-      assert_int_equal(periodic_choose(&s->box, s->a, s->n, width, tolerance).single, single);
+      const int floats = single && hold_common_flow(s, tolerance);
+      assert_int_equal(periodic_choose(&s->box, s->a, s->n, width, tolerance).single, floats);
       product(s, width, tolerance, 1, F, u);
       product(s, width, tolerance, 0, F, v);
       for (int i = 0; i < width * s->n; i++) assert_true(isfinite(u[i]));
@@ -69,7 +78,7 @@ static void same_digits_in_box(const scene *s, int single)
       if (getenv("STOKESDYN_SHOW")) printf("%s box, width %d, 1e-%d: %.1e\n", s->box.periodic ? "periodic" : "open",
                                            width, digits, off);
       assert_true(off < 0.1 * tolerance && off < 2e-6);
-      if (single) assert_true(off > 0.0);
+      if (floats) assert_true(off > 0.0);
     }
 }
 

@@ -1,6 +1,7 @@
 #include "sd_radial.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "sd_chebyshev.h"
@@ -224,6 +225,59 @@ static double polynomial_error(const sd_ewald *e)
   return e->tolerance * fmin(0.1 * D[SD_I0], 0.6 / (6.0 * SD_PI * e->a_ref * sqrt(fmax(1.0, neighbours))));
 }
 
+/* The pair's tensor has the mean 1/(6 pi r) over all directions, whatever the radii, less I_n + J_n/3.
+ * Integrated over 4 pi r^2 from the range on, by Simpson's rule: there is nothing beyond 8/xi more. */
+void sd_radial_tail(const sd_ewald *e, double *tail)
+{
+  enum { STEPS = 400 };
+  if (e->band > 0.0) {
+    tail_of_band(e, tail);
+    return;
+  }
+  const double dr = 8.0 / e->xi / STEPS;
+  for (int n = 0; n < 3; n++) tail[n] = 0.0;
+  for (int s = 0; s <= STEPS; s++) {
+    const double r = e->range + s * dr;
+    const double weight = (s == 0 || s == STEPS ? 1.0 : s % 2 ? 4.0 : 2.0) * dr / 3.0;
+    double D[SD_RADIALS];
+    sd_radial(e, r, D);
+    for (int n = 0; n < 3; n++) {
+      const double mean = D[SD_I0 + 2 * n] + r * r / 3.0 * D[SD_J0 + 2 * n];
+      tail[n] += weight * 4.0 * SD_PI * r * r * ((n == 0 ? 1.0 / (6.0 * SD_PI * r) : 0.0) - mean);
+    }
+  }
+}
+
+/* Over the ball of the range the mean of T_k, t = 2 (r/R)^2 - 1, r^2 dr goes as sqrt(1 + t) dt; and of (1 + t) T_k */
+static double mean_of_term(int k)
+{
+  const double k2 = (double) k * k;
+  return 0.375 * (1.5 / (2.25 - k2) + 0.5 / (0.25 - k2));
+}
+
+static double mean_of_raised_term(int k)
+{
+  return mean_of_term(k) + 0.5 * (mean_of_term(k + 1) + mean_of_term(abs(k - 1)));
+}
+
+/* Forces that are alike add up what polynomials mistake of I_n + J_n/3 in the mean over the ball: their constants make
+ * up for the terms from `degree` on that are left out. No wave k = 0 holds the tail of an open box: there they have
+ * the mean of it, too, with which all neighbours make up for those beyond them. */
+static void keep_means(const sd_ewald *e, int degree, long double series[][SD_CHEBYSHEV_MOST], double *coefficient)
+{
+  const double R2 = e->range * e->range, ball = 4.0 / 3.0 * SD_PI * R2 * e->range;
+  const int open = !e->box.periodic && e->band > 0.0 && e->positive == 0.0;
+  double tail[3] = {0.0};
+  if (open) sd_radial_tail(e, tail);
+  for (int n = 0; n < 3; n++) {
+    const long double *I = series[SD_I0 + 2 * n], *J = series[SD_J0 + 2 * n];
+    double left = -tail[n] / ball;
+    for (int k = degree + 1; k < SD_CHEBYSHEV_MOST - 1; k++)
+      left += (double) I[k] * mean_of_term(k) + R2 / 6.0 * (double) J[k] * mean_of_raised_term(k);
+    coefficient[(SD_I0 + 2 * n) * SD_RADIAL_TERMS] += left;
+  }
+}
+
 int sd_radial_fit(const sd_ewald *e, int width, double *coefficient)
 {
   enum { NODES = SD_CHEBYSHEV_MOST };
@@ -251,28 +305,6 @@ int sd_radial_fit(const sd_ewald *e, int width, double *coefficient)
   memset(coefficient, 0, SD_RADIALS * SD_RADIAL_TERMS * sizeof(double));
   for (int f = 0; f < SD_RADIALS; f++)
     sd_chebyshev_powers(series[f], degree, coefficient + f * SD_RADIAL_TERMS);
+  keep_means(e, degree, series, coefficient);
   return degree;
-}
-
-/* The pair's tensor has the mean 1/(6 pi r) over all directions, whatever the radii, less I_n + J_n/3.
- * Integrated over 4 pi r^2 from the range on, by Simpson's rule: there is nothing beyond 8/xi more. */
-void sd_radial_tail(const sd_ewald *e, double *tail)
-{
-  enum { STEPS = 400 };
-  if (e->band > 0.0) {
-    tail_of_band(e, tail);
-    return;
-  }
-  const double dr = 8.0 / e->xi / STEPS;
-  for (int n = 0; n < 3; n++) tail[n] = 0.0;
-  for (int s = 0; s <= STEPS; s++) {
-    const double r = e->range + s * dr;
-    const double weight = (s == 0 || s == STEPS ? 1.0 : s % 2 ? 4.0 : 2.0) * dr / 3.0;
-    double D[SD_RADIALS];
-    sd_radial(e, r, D);
-    for (int n = 0; n < 3; n++) {
-      const double mean = D[SD_I0 + 2 * n] + r * r / 3.0 * D[SD_J0 + 2 * n];
-      tail[n] += weight * 4.0 * SD_PI * r * r * ((n == 0 ? 1.0 / (6.0 * SD_PI * r) : 0.0) - mean);
-    }
-  }
 }

@@ -70,9 +70,10 @@ void sd_radial(const sd_ewald *e, double r, double *value);
 /* Polynomials on [0, range] in t = 2 (r/range)^2 - 1:
  *   width                                       3, or 6 with torques: which functions count
  *   coefficient [SD_RADIALS][SD_RADIAL_TERMS]   of 1, t, t^2 ...
- * Returns their degree: the smallest with which what the functions add to a velocity is right to a
- * tenth of the tolerance, relative to I_0(0), and what all neighbours add to half of it, relative to
- * 1/(6 pi a). */
+ * Returns their degree: the smallest with which what the functions add to a velocity is right to a tenth of
+ * the tolerance, relative to I_0(0), and what all neighbours add to half of it, relative to 1/(6 pi a). In
+ * an open box where waves end at a band, which no sd_radial_tail is added to, I_0, I_1 and I_2 have it, less
+ * than they are by what it is over the ball of the range. */
 int sd_radial_fit(const sd_ewald *e, int width, double *coefficient);
 
 /* What the near part leaves out beyond its range, summed over all directions and distances:

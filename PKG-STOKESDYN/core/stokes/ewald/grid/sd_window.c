@@ -25,19 +25,27 @@ static long double window_at(int points, double beta, int k, long double v)
   return bessel_i0(beta * sqrtl(fmaxl(0.0L, 1.0L - tau * tau)));
 }
 
+/* What the points of a sphere with v add up to, over their mean: nearly 1, and divided out */
+static long double unevenness(int points, double beta, long double v)
+{
+  long double sum = 0.0L;
+  for (int k = 0; k < points; k++) sum += window_at(points, beta, k, v);
+  return sum / (bessel_i0(beta) * sd_window_transform(points, beta, 0.0));
+}
+
 /* Up to the highest degree that any point needs: beyond it all are below a part of the tolerance, which
  * second derivatives leave small. */
 void sd_window_fit(int points, double beta, double tolerance, sd_window *w)
 {
   enum { NODES = SD_WINDOW_TERMS + 8 };
-  const long double unit = 1.0L / bessel_i0(beta);
-  long double series[SD_WINDOW_MOST_POINTS][NODES];
+  long double series[SD_WINDOW_MOST_POINTS][NODES], unit[NODES];
   memset(w, 0, sizeof(*w));
   w->points = points;
+  for (int s = 0; s < NODES; s++)
+    unit[s] = 1.0L / (bessel_i0(beta) * unevenness(points, beta, sd_chebyshev_node(s, NODES)));
   for (int k = 0; k < points; k++) {
     long double sample[NODES];
-    for (int s = 0; s < NODES; s++)
-      sample[s] = unit * window_at(points, beta, k, sd_chebyshev_node(s, NODES));
+    for (int s = 0; s < NODES; s++) sample[s] = unit[s] * window_at(points, beta, k, sd_chebyshev_node(s, NODES));
     sd_chebyshev_series(sample, NODES, series[k]);
     for (int m = w->degree + 1; m < SD_WINDOW_TERMS; m++)
       if (fabsl(series[k][m]) > 1e-4L * tolerance) w->degree = m;

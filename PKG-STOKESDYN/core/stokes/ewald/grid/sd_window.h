@@ -2,8 +2,9 @@
  *
  *   phi(s) = I_0(beta sqrt(1 - tau^2))/I_0(beta),   tau = 2 s/P,   |s| <= P/2 grid spacings
  *
- * in each direction, P points wide. It is evaluated as a polynomial for each point, and its
- * derivatives are those of the polynomials. */
+ * in each direction, P points wide. It is evaluated as a polynomial for each point, and its derivatives are
+ * those of the polynomials. A sphere's points are divided by their sum, which would depend a little on where
+ * it stands: a flow that is the same everywhere reaches it without error, and its derivatives are 0. */
 #ifndef SD_WINDOW_H
 #define SD_WINDOW_H
 

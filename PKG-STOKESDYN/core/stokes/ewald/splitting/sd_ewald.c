@@ -70,8 +70,8 @@ static double range_in_gap(const sd_ewald_box *box, const splitting *by, double 
   return fmax(range, fmax(y * largest / by->most, 2.0 * largest));
 }
 
-/* Part of the tolerance that may be the error of the common flow */
-static const double COMMON = 0.62;
+/* Part of the tolerance that may be the error of the common flow; other errors are random and smaller then. */
+static const double COMMON = 0.9;
 
 /* xi, a_ref, range, the window, and the largest spacing of the grid. What is lost tightens the tolerance,
  * which in turn moves xi; *near: the tolerance of the range and of the spacing. */
@@ -92,10 +92,10 @@ static void split(sd_ewald *e, const splitting *by, double *near)
   }
   e->points = sd_splitting_points_of(by, e->tolerance, e->xi * y, t) + by->tall;
   e->beta = sd_splitting_beta(e, by) * e->points;
+  e->spacing = sd_splitting_spacing(e, by, *near, y);
   while (by->fall == BAND && e->points < SD_WINDOW_MOST_POINTS && sd_splitting_common_flow(e) > COMMON * e->tolerance)
     e->beta = sd_splitting_beta(e, by) * ++e->points;
   e->reach = e->range;
-  e->spacing = sd_splitting_spacing(e, by, *near, y);
 }
 
 /* Points of the transform of a periodic direction, a multiple of 4 as open ones are: for 42, 50, 54, 70, 90, 98 and
@@ -235,11 +235,13 @@ sd_status sd_ewald_prepare(const sd_ewald_box *box, const sd_ewald_class *all, d
 
 /* Is single precision enough for a splitting and its spheres? The tolerance may be off by its last digits.
  * Coordinates have steps of range/2^30 then (sd_ewald_kernels.h): a millionth of a radius at most, which
- * spheres in touch feel. Floats hold squares of lengths, and of their inverses, from 1e-38 to 1e38. */
+ * spheres in touch feel. Floats hold squares of lengths, and of their inverses, from 1e-38 to 1e38. Of the flow that
+ * all spheres of an open box have in common, N a/L and more, they lose some 4e-7. */
 static int floats_do(const sd_ewald *e, const sd_ewald_class *s)
 {
-  const double shortest = 1e-15, longest = 1e13;
-  return e->tolerance >= SD_EWALD_SINGLE * (1.0 - 1e-9) && e->range <= 1e3 * sqrt(s->squares / s->count) &&
+  const double shortest = 1e-15, longest = 1e13, lost = 4e-7, rms = sqrt(s->squares / s->count);
+  const double flow = e->box.periodic ? 0.0 : s->count * rms / cbrt(sd_ewald_volume(&e->box));
+  return e->tolerance >= SD_EWALD_SINGLE * (1.0 - 1e-9) && lost * flow <= 0.5 * e->tolerance && e->range <= 1e3 * rms &&
       e->range >= shortest && e->range <= longest;
 }
 
@@ -270,6 +272,15 @@ sd_status sd_ewald_choose_positive(const sd_ewald_box *box, const sd_ewald_sizes
  * are few; in a layer they are as many as near spheres. */
 static const double AT_WALL = 0.125, AT_HIGH_WALL = 0.5, HIGH = 3.0, SMOOTHER = 0.7, FARTHER = 1.5;
 
+/* The mean square of heights between r and 1 times the highest is larger by 1 + r + r^2 than that from the wall up. A
+ * thin layer far above it, under equal forces, had 4.3 tolerances. */
+static double at_wall_of(const sd_ewald_box *box, const sd_wall *wall)
+{
+  const double edge = box->edge[wall->axis], from = wall->sign * (box->origin[wall->axis] - wall->at);
+  const double lowest = fmax(0.0, wall->sign > 0 ? from : from - edge), r = lowest / (lowest + edge);
+  return AT_WALL * pow(1.0 + r + r * r, -2.0);
+}
+
 sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
                                   const sd_ewald_sizes *sizes, double tolerance, sd_ewald *out)
 {
@@ -278,7 +289,7 @@ sd_status sd_ewald_choose_at_wall(const sd_ewald_box *box, const sd_wall *wall,
   if (!some) return status;
   const double asked = out->tolerance;
   out->images.wall = *wall;
-  out->tolerance = fmax(TIGHTEST, AT_WALL * asked);
+  out->tolerance = fmax(TIGHTEST, at_wall_of(box, wall) * asked);
   status = one_level(out, GAUSSIAN, &sizes->all, 3, LARGEST);
   out->images = (sd_ewald_images){*wall, out->xi, out->range, 0.0};
   if (status == SD_OK && box->edge[wall->axis] > HIGH * out->range) {

@@ -26,7 +26,8 @@ static double loss_by_torques(const splitting *by, double tolerance, double xi_y
   if (by->width < 6) return 1.0;
   if (by->fall == GAUSSIAN) return 3.0;
   if (!by->equal) return 1.2 + 0.2 * digits;
-  return fmax(1.0, (1.0 + 0.4 * digits) * pow(largest_wave(by, xi_y), 2.2));
+  const double Ka = largest_wave(by, xi_y), overlap = fmax(1.0, 0.2 * Ka);
+  return fmax(1.0, (1.0 + 0.4 * digits) * pow(Ka, 2.2) * overlap * overlap);
 }
 
 double sd_splitting_tightened(const splitting *by, double tolerance, double xi_y)
@@ -36,21 +37,8 @@ double sd_splitting_tightened(const splitting *by, double tolerance, double xi_y
   return tolerance / fmax(1.0, loss) / loss_by_torques(by, tolerance, xi_y);
 }
 
-/* Rms of b of sd_radial.h over targets, times b of the largest sphere and its radius over the rms of all. A source
- * counts as F^2/a^2 in what errors are measured with: of all forces those are worst that act on the largest spheres
- * alone, as weights nearly do where few are large. */
-static double rms_of_b(const splitting *by)
-{
-  const sd_ewald_class *s = &by->spheres;
-  const double most = s->largest * s->largest, ref = by->a_ref * by->a_ref;
-  const double a2 = s->squares / s->count, a4 = s->fourths / s->count;
-  const double targets = a4 - 2.0 * ref * a2 + ref * ref;
-  return sqrt(fmax(0.0, targets) * most / a2) * fabs(most - ref) / 36.0;
-}
-
-/* Part of the tolerance that may be left beyond the range; windows have the rest. In a slab nothing makes up for the
- * mean of what unlike spheres leave there (sd_columns.h knows that of equal ones), and weights add it up. */
-static const double BEYOND = 0.62, UNLIKE_IN_SLAB = 0.3;
+/* Part of the tolerance that may be left beyond the range; windows have the rest */
+static const double BEYOND = 0.62;
 
 /* The share of spheres that are large, if those are as large as the largest: the fourth moment knows it. */
 static double share_of_large(const sd_ewald_class *s)
@@ -76,17 +64,37 @@ static double beyond_of_alike(double KR, double Ka)
   return (0.196 + 0.0101 * KR) * hypot(0.25, 1.0 - Ka * Ka / (7.5 + 0.12 * KR)) * KR * exp(-KR);
 }
 
-/* b_i b_j (I_2 + J_2 hh) has k^4 more than I_0. At r = R the saddle is at imaginary waves of the order of K^2 R, not K,
- * so that this part is larger by (K^2 R)^4 b_i b_j. As above it is sqrt(R) times
- *   3e-4 K^4 (KR - 3)^4 KR exp(-KR) (1 - (K a_ref)^2/23) times the rms of b,
- * the numbers found by integration for KR from 11 to 40. */
-static double beyond_of_unlike(double KR, double K, double Ka)
+/* b_i b_j (I_2 + J_2 hh) has k^4 more than I_0, and (b_i + b_j) (I_1 + J_1 hh) has k^2 more. At r = R the saddle is at
+ * imaginary waves of the order of K^2 R, not K, so that these are larger by powers of K^2 R, and add up where b > 0.
+ * As above they are sqrt(R) times
+ *   3e-4 q^2 KR exp(-KR) (1 - (K a_ref)^2/23) times the rms of b_i b_j + c (b_i + b_j),   q = K^2 (KR - 3)^2,  c = 63/q,
+ * the numbers found by integration for KR from 8 to 36.
+ */
+static double unlike_in(double KR, double K, double Ka)
 {
   return 3e-4 * pow(K * (KR - 3.0), 4.0) * KR * exp(-KR) * hypot(0.2, 1.0 - Ka * Ka / 23.0);
 }
 
+static double c_of(double KR, double K)
+{
+  return 63.0 * pow(K * (KR - 3.0), -2.0);
+}
+
+/* The rms over targets i, where j is the largest sphere, times its radius over the rms of all. A source counts as
+ * F^2/a^2 in what errors are measured with: of all forces those are worst that act on the largest spheres alone, as
+ * weights nearly do where few are large; few: more_of_few, of targets that are large. */
+static double rms_of_unlike(const splitting *by, double c, double few)
+{
+  const sd_ewald_class *s = &by->spheres;
+  const double most = s->largest * s->largest, ref = by->a_ref * by->a_ref, b = (most - ref) / 6.0;
+  const double a2 = s->squares / s->count, a4 = s->fourths / s->count;
+  const double mean = (a2 - ref) / 6.0, square = (a4 - 2.0 * ref * a2 + ref * ref) / 36.0, slope = few * (b + c);
+  return sqrt(fmax(0.0, slope * slope * square + 2.0 * slope * c * b * mean + c * c * b * b) * most / a2);
+}
+
 /* A large sphere in a small box sees images of its own just beyond the range, where chance has nothing to do with it:
- * what one of them leaves is the above times sqrt(K/(2 pi R)), and falls as exp(-K r). Their sum, over that. */
+ * what one of them leaves is the above times sqrt(K/(2 pi R)), of forces across it 1.22 times as much, and more where
+ * it falls faster than exp(-K r). Their sum, over the above. */
 static double of_own_images(const sd_ewald_box *box, double R, double K)
 {
   const double *L = box->edge, *tilt = box->tilt;
@@ -97,7 +105,7 @@ static double of_own_images(const sd_ewald_box *box, double R, double K)
     const double r = hypot(i * L[0] + j * tilt[0] + k * tilt[1], hypot(j * L[1] + k * tilt[2], k * L[2]));
     if (r > R) sum += exp(-K * (r - R));
   }
-  return sum * sqrt(K / (2.0 * SD_PI * R));
+  return 1.22 * fmax(1.0, 0.055 * K * R) * sum * sqrt(K / (2.0 * SD_PI * R));
 }
 
 double sd_splitting_beyond(const sd_ewald *e, const splitting *by, double t)
@@ -108,11 +116,10 @@ double sd_splitting_beyond(const sd_ewald *e, const splitting *by, double t)
   const double unit = 6.0 * SD_PI / (BEYOND * e->tolerance), all = rms * sqrt(n * e->range);
   double most = unit * all * beyond_of_alike(KR, Ka);
   if (!by->equal) {
-    const double a = e->largest, b = (a * a - e->a_ref * e->a_ref) / 6.0;
-    const double part = by->farthest > 0.0 ? UNLIKE_IN_SLAB : 1.0;
-    const double alone = a * b * b * of_own_images(&e->box, e->range, K);
-    const double weighed = fmax(alone, all * rms_of_b(by) * more_of_few(e, by, K));
-    most = fmax(most, unit / part * beyond_of_unlike(KR, K, Ka) * weighed);
+    const double a = e->largest, b = (a * a - e->a_ref * e->a_ref) / 6.0, c = c_of(KR, K);
+    const double alone = a * b * (b + 2.0 * c) * of_own_images(&e->box, e->range, K);
+    const double weighed = fmax(alone, all * rms_of_unlike(by, c, more_of_few(e, by, K)));
+    most = fmax(most, unit * unlike_in(KR, K, Ka) * weighed);
   }
   return t / most;
 }
@@ -127,14 +134,8 @@ double sd_splitting_gaussian_spacing(double xi, double y)
   return SD_PI / (2.2 * xi * y);
 }
 
-/* Windows of so few points have a larger beta in an open box for the sake of the common flow, and mistake short
- * waves more: the grid is finer. */
+/* Windows of unlike spheres that stand in one vector of floats (sd_splitting_five_may_do) */
 enum { FEW_POINTS = 5 };
-
-static int few_points(const splitting *by, double digits)
-{
-  return by->equal && 2.0 + digits <= FEW_POINTS + 1e-9;
-}
 
 /* The range of a band in spacings, and its waves over the shortest of the grid. From errors that were
  * measured over ranges, bands and windows: those of a Gaussian with windows of as many points, whose range
@@ -142,7 +143,7 @@ static int few_points(const splitting *by, double digits)
  * makes up for the cut-off. */
 double sd_splitting_band_spacings(const sd_ewald_box *box, const splitting *by, double t)
 {
-  const double digits = log10(1.0 / t), open = box->periodic ? 0.0 : few_points(by, digits) ? 0.2 : 0.07;
+  const double digits = log10(1.0 / t), open = box->periodic ? 0.0 : 0.07;
   const double more = by->slopes && !equal_turn(by) ? (by->five ? 0.36 : 0.18) + 0.1 * digits : 0.0;
   return 0.94 + (0.9 + 0.007 * digits) * digits + more + open;
 }
@@ -186,9 +187,9 @@ int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, d
     return whole_points(1.4 + 1.15 * log10(loss / tolerance));
   }
   if (by->five) return FEW_POINTS;
-  const double slower = by->fall == BAND && !by->equal ? 0.06 * fmax(0.0, log10(1.0 / tolerance) - 5.0) : 0.0;
+  const double slower = by->fall == BAND && !by->equal ? 0.08 * fmax(0.0, log10(1.0 / tolerance) - 5.0) : 0.0;
   const double heights = by->at_wall ? 0.9 * fmax(0.0, log10(1.0 / t) - 7.9) : 0.0;
-  const double few = by->fall == BAND && !by->equal ? 0.25 * log10(1.0 / share_of_large(&by->spheres)) : 0.0;
+  const double few = by->fall == BAND && !by->equal ? 0.35 * log10(1.0 / share_of_large(&by->spheres)) : 0.0;
   const double large = by->fall == BAND ? log10(fmax(1.0, largest_wave(by, xi_y) / 8.0)) : 0.0;
   return whole_points(2.0 + log10(1.0 / t) + slower + heights + few + large);
 }
@@ -202,7 +203,7 @@ double sd_splitting_beta(const sd_ewald *e, const splitting *by)
   if (by->five) return 2.7;
   const double heights = by->at_wall ? 0.016 * fmax(0.0, e->points - 10.0) : 0.0;
   if (by->fall == BAND ? !by->equal : by->slopes) return 2.42 - heights;
-  return by->fall == BAND && !e->box.periodic && e->points <= FEW_POINTS ? 2.35 : 2.25;
+  return 2.25;
 }
 
 /* Windows of five points stand in one vector of floats, and those of six in two. The loss by large spheres above is for
@@ -223,13 +224,15 @@ int sd_splitting_five_do(const sd_ewald *e)
   return e->tolerance >= (1.0 - 1e-9) * 1e-3 * fmax(1.0, pow(e->band * e->largest / 2.7, 3.0));
 }
 
-/* A flow that is the same everywhere reaches a sphere with an error that depends on where it stands on the grid:
- * the transform of the window at the wave of the grid over that at none. In an open box spheres under random forces
- * move together, like sqrt(N) of them from a box away. The number is from errors of 20 000 to 10^6 spheres. */
+/* A flow that changes by a part of itself over a box reaches a sphere with an error that depends on where it stands on
+ * the grid: the transform of the window at the wave of the grid over that at none, times its change from point to
+ * point. (Of a flow that is the same everywhere there is none: sd_window.h.) The spheres of an open box make a flow of
+ * 1.9 N a/L where equal forces act, N a/L of the order of hundreds. The number is from errors of 5000 and 30 000
+ * spheres under such forces with windows of 5 to 8 points. */
 double sd_splitting_common_flow(const sd_ewald *e)
 {
   if (e->box.periodic) return 0.0;
-  const double alias = sd_window_transform(e->points, e->beta, 2.0 * SD_PI) /
-      sd_window_transform(e->points, e->beta, 0.0);
-  return 9.1 * fabs(alias) * sqrt(e->count) * e->a_ref / cbrt(sd_ewald_volume(&e->box));
+  const double edge = cbrt(sd_ewald_volume(&e->box)), over = e->beta / e->points;
+  const double alias = sinh(e->beta) / e->beta * e->points * sqrt(SD_PI * SD_PI - over * over);
+  return 17.0 / alias * e->count * e->a_ref * e->spacing / (edge * edge);
 }

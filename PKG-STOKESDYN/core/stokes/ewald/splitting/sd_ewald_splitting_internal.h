@@ -56,8 +56,8 @@ double sd_splitting_beta(const sd_ewald *e, const splitting *by);
 int sd_splitting_five_may_do(const sd_ewald *e, const splitting *by);
 int sd_splitting_five_do(const sd_ewald *e);
 
-/* What this window mistakes of the flow that all spheres of an open box have in common under random
- * forces, over F/(6 pi eta a): it grows as N^(1/6). 0 in a periodic box, which has no such flow */
+/* What this window mistakes of the flow that all spheres of an open box have in common under equal forces,
+ * over F/(6 pi eta a): it grows as N^(1/3). 0 in a periodic box, where such a flow is that of k = 0 alone */
 double sd_splitting_common_flow(const sd_ewald *e);
 
 #endif

@@ -151,6 +151,37 @@ static void tail_of_a_band_is_the_rest_of_the_mean(void **state)
   CHECK_NEAR(tail[2] + within[2], 0.0, 1e-7);
 }
 
+/* Over the ball of the range polynomials have the mean of the functions; in an open box, less the tail's. */
+static void polynomials_keep_means(void **state)
+{
+  (void) state;
+  enum { STEPS = 2000 };
+  const sd_ewald_sizes sizes = {.all = {1e4, 1e4, 1e4, 1.0}};
+  for (int open = 0; open < 2; open++) {
+    const sd_ewald_box box = {.periodic = !open, .edge = {60, 60, 60}};
+    sd_ewald e;
+    double c[SD_RADIALS][SD_RADIAL_TERMS], D[SD_RADIALS], tail[3], off[3] = {0.0}, scale[3] = {0.0};
+    assert_int_equal(sd_ewald_choose(&box, &sizes, 3, 1e-3, &e), SD_OK);
+    const int degree = sd_radial_fit(&e, 3, c[0]);
+    sd_radial_tail(&e, tail);
+    for (int s = 0; s <= STEPS; s++) {
+      const double r = s * e.range / STEPS, r2 = r * r, t = 2.0 * s * s / (STEPS * (double) STEPS) - 1.0;
+      const double weight = (s == 0 || s == STEPS ? 1.0 : s % 2 ? 4.0 : 2.0) / 3.0 * e.range / STEPS * 4.0 * SD_PI * r2;
+      sd_radial(&e, r, D);
+      for (int n = 0; n < 3; n++) {
+        double I = 0.0, J = 0.0, power = 1.0;
+        for (int m = 0; m <= degree; m++, power *= t) {
+          I += c[SD_I0 + 2 * n][m] * power;
+          J += c[SD_J0 + 2 * n][m] * power;
+        }
+        off[n] += weight * (I - D[SD_I0 + 2 * n] + (J - D[SD_J0 + 2 * n]) * r2 / 3.0);
+        scale[n] += weight * fabs(D[SD_I0 + 2 * n]);
+      }
+    }
+    for (int n = 0; n < 3; n++) CHECK_NEAR(off[n] + open * tail[n], 0.0, 1e-10 * scale[n]);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -159,6 +190,7 @@ int main(void)
       cmocka_unit_test(a_band_leaves_little_beyond_the_range),
       cmocka_unit_test(functions_of_a_band_are_the_integrals),
       cmocka_unit_test(tail_of_a_band_is_the_rest_of_the_mean),
+      cmocka_unit_test(polynomials_keep_means),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
