@@ -231,7 +231,7 @@ def test_where_noise_has_faded_the_path_is_that_without(simulation, style):
 def unlike_spheres():
     """Four small ones around a large one that stands in a face, with films"""
     to = np.array([(0.0, 0.0, 0.0), (2.55, 0.8, 0.2), (-2.0, -1.55, 1.1), (0.2, -0.5, -2.7), (1.6, 1.6, -1.6)])
-    return Spheres(((9.0, 17.5, 9.0) + 0.83 * to) % 18.0, [1.5, 0.6, 0.6, 0.6, 0.6])
+    return Spheres(((9.0, 17.5, 9.0) + 0.71 * to) % 18.0, [1.2, 0.6, 0.6, 0.6, 0.6])
 
 
 DEFORM = "\nchange_box all triclinic\nfix d all deform 1 xy erate 1.7 remap v"

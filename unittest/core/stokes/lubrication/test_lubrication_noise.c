@@ -132,6 +132,22 @@ static void rounding_of_a_part_that_is_not_there_is_no_failure(void **state)
   assert_true(fabs(F[4]) > 0.1 * sqrt(roll));
 }
 
+/* Where a film of equal spheres is clipped, nothing is left of what it resists of rolling in step: rounding of its
+ * numbers, in which ranks differ, changes no force by more. */
+static void rounding_of_a_film_that_is_clipped_is_no_force(void **state)
+{
+  (void) state;
+  const double d[3] = {0.6, 0.0, 0.8}, hair = 3e-16;
+  double g[12], F[2][12] = {{0.0}};
+  for (int k = 0; k < 12; k++) g[k] = cos(3.0 * k);
+  for (int off = 0; off < 2; off++) {
+    const sd_film film = {1.3, 0.2, {0.3 * (1.0 + off * hair), 0.3, 0.3 * (1.0 + off * hair)}, 0.0};
+    const sd_pair_resistance R = sd_film_resistance(&film, 2.1, 1.0);
+    assert_int_equal(sd_pair_noise(&R, d, 1.0, g, F[off]), SD_OK);
+  }
+  for (int k = 0; k < 12; k++) assert_true(fabs(F[1][k] - F[0][k]) < 1e-14);
+}
+
 static void what_is_negative_has_no_root(void **state)
 {
   (void) state;
@@ -148,6 +164,7 @@ int main(void)
       cmocka_unit_test(of_shells_through_all_images),
       cmocka_unit_test(units_of_length_do_not_matter),
       cmocka_unit_test(rounding_of_a_part_that_is_not_there_is_no_failure),
+      cmocka_unit_test(rounding_of_a_film_that_is_clipped_is_no_force),
       cmocka_unit_test(what_is_negative_has_no_root),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
