@@ -67,14 +67,13 @@ std::vector<const sd_body_root *> BodyNoise::roots(const Voice &voice, const std
   return out;
 }
 
-const sd_body_follow *BodyNoise::follow(const Voice &voice, const sd_body &body, Turns turns)
+const sd_body_follow *BodyNoise::follow(const Voice &voice, const sd_body &body)
 {
   if (!body.shape) return nullptr;
   const auto known = all_follow.find(body.shape);
   if (known != all_follow.end()) return &known->second;
   auto &made_now = all_follow[body.shape];
-  const sd_status status = turns == STILL ? sd_body_follow_mean(body.shape, &made_now)
-                                          : sd_body_follow_create(body.shape, turns == ALONG, &made_now);
+  const sd_status status = sd_body_follow_create(body.shape, &made_now);
   if (status != SD_OK) voice.of("keyword temperature: bodies").fail_one(sd_status_string(status));
   return &made_now;
 }

@@ -24,9 +24,7 @@ class BodyNoise {
   /* By bodies [count], nullptr for those that are a point. split: of the near part of this sum, nullptr: of
    * the whole matrix. */
   std::vector<const sd_body_root *> roots(const Voice &, const std::vector<sd_body> &, const sd_ewald *split);
-  /* How a body moves the points of its shape: not at all; turned as it turns; turned in a way of its own */
-  enum Turns { STILL, ALONG, OTHERWISE };
-  const sd_body_follow *follow(const Voice &, const sd_body &, Turns);
+  const sd_body_follow *follow(const Voice &, const sd_body &);
 
  private:
   const sd_body_root *root(const Voice &, const sd_body &, const sd_ewald *split);

@@ -156,16 +156,6 @@ void BodyScene::add(const ClumpPoses::Clump &clump)
   shaped.push_back(body);
 }
 
-BodyNoise::Turns BodyScene::turns(size_t body) const
-{
-  const size_t free_ones = shaped.size() - poses.clumps().size();
-  if (body < free_ones) return BodyNoise::STILL;
-  const ClumpShape &is = poses.shape(poses.clumps()[body - free_ones]);
-  if (!scene.shells) return BodyNoise::ALONG;
-  const int rank = rigid.shapes.points(is, *scene.shells).rank;    // sd_multiblob_shape_stand
-  return rank == 0 ? BodyNoise::STILL : rank == 1 ? BodyNoise::OTHERWISE : BodyNoise::ALONG;
-}
-
 sd_bodies BodyScene::undrawn() const
 {
   sd_bodies rest = bodies;

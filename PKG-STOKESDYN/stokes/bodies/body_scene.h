@@ -59,9 +59,8 @@ class BodyScene : protected LAMMPS_NS::Pointers {
    * empty: there are none, or all of them rest */
   sd_bodies bodies = {};
   std::vector<double> u, velocities;
-  /* For noise: the bodies that have a shape, as if there were no wall, and how each moves its points */
+  /* For noise: the bodies that have a shape, as if there were no wall */
   const std::vector<sd_body> &in_open_space() const { return slowed_by_wall() ? open : shaped; }
-  BodyNoise::Turns turns(size_t shaped) const;
   /* Where the engine draws a part of its matrix at once (divides of sd_mobility.h): the bodies with the rest
    * of it. It stands as long as they do. */
   sd_bodies undrawn() const;

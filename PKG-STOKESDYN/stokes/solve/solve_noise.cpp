@@ -70,10 +70,10 @@ void Solve::find_followers()
       ambient.settings.visc.is_atom_style() || ambient.settings.grid_has_visc;
   for (size_t b = 0; b < all.size(); b++) {
     const int number = bodies.bodies.lone + (int) b;
-    follow[b] = shapes.follow(voice, all[b], bodies.turns(b));
-    const bool clump = bodies.turns(b) != BodyNoise::STILL;
-    if (follow[b] && !follow[b]->exact) left = 1.0;
-    if (clump && sd_bodies_known(&bodies.bodies, number) == SD_BODY_PINNED) left = 1.0;
+    follow[b] = shapes.follow(voice, all[b]);
+    if (!follow[b]) continue;
+    if (!follow[b]->exact) left = 1.0;
+    if (all[b].shape->turns != SD_BODY_STILL && sd_bodies_known(&bodies.bodies, number) == SD_BODY_PINNED) left = 1.0;
   }
   MPI_Allreduce(MPI_IN_PLACE, &left, 1, MPI_DOUBLE, MPI_MAX, world);
   differs = left != 0.0;

@@ -24,18 +24,10 @@ static void follow_rigid_row(const sd_body_shape *s, int i, double row[6])
   sd_cross(s->x + 3 * (long) (i / s->width), e, row + 3);
 }
 
-static sd_status follow_make_room(const sd_body_shape *s, sd_body_follow *out)
-{
-  *out = (sd_body_follow){.n = s->width * s->m};
-  out->A = calloc(6 * (size_t) out->n, sizeof(double));
-  return out->A ? SD_OK : SD_ENOMEMORY;
-}
-
-sd_status sd_body_follow_mean(const sd_body_shape *s, sd_body_follow *out)
+/* A sphere whose points do not turn */
+static void take_mean(const sd_body_shape *s, sd_body_follow *out)
 {
   double square[36] = {0.0}, inverse[36], K[6];
-  const sd_status status = follow_make_room(s, out);
-  if (status != SD_OK) return status;
   for (int i = 0; i < out->n; i++) {
     follow_rigid_row(s, i, K);
     for (int e = 0; e < 36; e++) square[e] += K[e / 6] * K[e % 6];
@@ -47,7 +39,6 @@ sd_status sd_body_follow_mean(const sd_body_shape *s, sd_body_follow *out)
       for (int p = 0; p < 6; p++) out->A[6 * (long) i + c] += K[p] * inverse[6 * p + c];
   }
   out->exact = 1;
-  return SD_OK;
 }
 
 /* --- the conditions --- */
@@ -250,23 +241,37 @@ static sd_status find_own(const sd_body_shape *s, sd_body_follow *f)
 /* Conditions are met to rounding, or not at all. */
 static const double MET = 1e-7;
 
-sd_status sd_body_follow_create(const sd_body_shape *s, int stands, sd_body_follow *out)
+/* A body that turns with its points, or in another way: M_b'^-1 K N */
+static sd_status follow_turning(const sd_body_shape *s, sd_body_follow *out)
 {
   double wrong = INFINITY;
-  sd_status status = follow_make_room(s, out);
-  if (status == SD_OK && stands && s->inverse && out->n <= SD_BODY_FOLLOW_MOST) {
-    status = design(s, out->A, &wrong);
-    if (status == SD_ESINGULAR) status = SD_OK;
+  if (s->turns == SD_BODY_ALONG && s->inverse && out->n <= SD_BODY_FOLLOW_MOST) {
+    const sd_status status = design(s, out->A, &wrong);
+    if (status != SD_OK && status != SD_ESINGULAR) return status;
   }
-  if (status == SD_OK && wrong < MET) {
+  if (wrong < MET) {
     out->exact = 1;
-    status = find_own(s, out);
-  } else if (status == SD_OK)
-    for (long i = 0; i < out->n; i++)
-      for (int c = 0; c < 6; c++) {
-        out->A[6 * i + c] = 0.0;
-        for (int p = 0; p < 6; p++) out->A[6 * i + c] += s->rigid[6 * i + p] * s->mobility[6 * p + c];
-      }
+    return find_own(s, out);
+  }
+  for (long i = 0; i < out->n; i++)
+    for (int c = 0; c < 6; c++) {
+      out->A[6 * i + c] = 0.0;
+      for (int p = 0; p < 6; p++) out->A[6 * i + c] += s->rigid[6 * i + p] * s->mobility[6 * p + c];
+    }
+  return SD_OK;
+}
+
+sd_status sd_body_follow_create(const sd_body_shape *s, sd_body_follow *out)
+{
+  sd_status status = SD_OK;
+  *out = (sd_body_follow){.n = s->width * s->m};
+  out->A = calloc(6 * (size_t) out->n, sizeof(double));
+  if (!out->A)
+    status = SD_ENOMEMORY;
+  else if (s->turns == SD_BODY_STILL)
+    take_mean(s, out);
+  else
+    status = follow_turning(s, out);
   if (status != SD_OK) sd_body_follow_free(out);
   return status;
 }

@@ -33,11 +33,9 @@ typedef struct {
 /* Bodies of more numbers have no A that is exact: finding it would take longer than what it saves. */
 enum { SD_BODY_FOLLOW_MOST = 600 };
 
-/* A sphere whose points do not turn. The owner frees. SD_OK; SD_ENOMEMORY. */
-sd_status sd_body_follow_mean(const sd_body_shape *shape, sd_body_follow *out);
-/* A body that turns with all its points; those of bodies that turn otherwise (stands 0) have no A that is
- * exact. The owner frees. SD_OK; SD_ENOMEMORY; SD_ENOTFINITE. */
-sd_status sd_body_follow_create(const sd_body_shape *shape, int stands, sd_body_follow *out);
+/* Of the kind that its points ask for (shape->turns): of those that turn in a way of their own no A is exact.
+ * The owner frees. SD_OK; SD_ENOMEMORY; SD_ENOTFINITE. */
+sd_status sd_body_follow_create(const sd_body_shape *shape, sd_body_follow *out);
 void sd_body_follow_free(sd_body_follow *f);
 
 SD_END_C

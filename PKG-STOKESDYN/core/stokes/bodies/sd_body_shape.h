@@ -28,9 +28,15 @@
 
 SD_BEGIN_C
 
+/* How the points move as the body turns: along with it; not at all; in a way of their own
+ * (sd_multiblob_shape_stand) */
+typedef enum { SD_BODY_ALONG, SD_BODY_STILL, SD_BODY_OTHERWISE } sd_body_turns;
+
 typedef struct {
   /* points, and numbers of each: 3 or 6 */
   int m, width;
+  /* SD_BODY_ALONG unless the maker says another */
+  sd_body_turns turns;
   /* [3m] X_k, from the centre; [m] radii */
   double *x, *radius;
   /* [(width m)^2] M_b'^-1, symmetric, or in blocks, width 3: then `inverse` is NULL; [(width m) 6] M_b'^-1 K,

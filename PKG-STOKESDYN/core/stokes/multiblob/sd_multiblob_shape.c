@@ -188,6 +188,7 @@ static sd_status fill_shape(const sd_multiblob *m, const sd_shape *clump,
   sd_status status = scratch && out->row
       ? make_shape(m, NULL, !clump, s, origin, scratch, out->row, &out->points)
       : SD_ENOMEMORY;
+  out->points.turns = out->rank == 2 ? SD_BODY_ALONG : out->rank == 1 ? SD_BODY_OTHERWISE : SD_BODY_STILL;
   if (status == SD_OK && !clump) status = find_faces(m, out);
   free(scratch);
   return status;
