@@ -178,6 +178,7 @@ void BodyScene::stand_films(const std::vector<int> &who)
   scene.stand(who, ambient);
   scene.turn_shells();
   lubrication.place(scene, &ambient);
+  if (!rigid.settings.on) return;
   film_arm.assign(3 * (size_t) scene.size() + 3, 0.0);
   for (const ClumpPoses::Clump &clump : poses.clumps()) {
     const ClumpShape &is = poses.shape(clump);
@@ -200,6 +201,7 @@ void BodyScene::put_together()
 {
   const int n = scene.size();
   const bool sees = scene.anybody_sees();
+  const bool clumps = rigid.settings.on;    // not one, on any rank: every sphere is a body, in the order of rows
   alone.how.width = scene.shells ? 3 : width;
   alone.n = n;
   bodies = {};
@@ -208,7 +210,7 @@ void BodyScene::put_together()
   bodies.shaped = shaped.size();
   bodies.body = shaped.data();
   bodies.none_shaped = !scene.shells && !rigid.settings.on && !slowed_by_wall();
-  bodies.spheres = {n, width, whole.data(), arm.data()};
+  bodies.spheres = {n, width, clumps ? whole.data() : nullptr, clumps ? arm.data() : nullptr};
   bodies.points = {n, width, nullptr, nullptr};
   bodies.film_arm = film_arm.empty() ? nullptr : film_arm.data();
   bodies.D = resistance.data();

@@ -145,7 +145,7 @@ std::vector<double> Solve::random_moves(const Draw &draw)
   std::vector<double> size(count, scene.smallest());
   reach = FAR * scene.smallest();
   for (size_t k = 0; k < (size_t) scene.size(); k++) {
-    const size_t b = A.spheres.whole[k];
+    const size_t b = sd_rigid_whole(&A.spheres, (int) k);
     const double *arm = &bodies.arms()[3 * k];
     tag[b] = std::min(tag[b], scene.tag((int) k));
     size[b] = std::max(size[b], std::sqrt(sd_dot(arm, arm)));
@@ -181,7 +181,7 @@ void Solve::difference(double sign)
     fail_by(Voice(lmp, StokesSettings::COMMAND).at_step().of("the drift by differences"), status);
   std::vector<char> done(count + 1, 0);
   for (size_t k = 0; k < n; k++) {
-    const size_t b = A.spheres.whole[k];
+    const size_t b = sd_rigid_whole(&A.spheres, (int) k);
     for (size_t d = 3; d < 6 && !done[b] && b >= bodies.first_clump(); d++)
       load_left[(size_t) A.spheres.width * k + d] += load[6 * b + d];
     done[b] = 1;

@@ -202,8 +202,7 @@ static sd_status finish(sd_bodies_loop *c, const sd_bodies_answer *answer)
     memcpy(answer->exerted, l, sizeof(double) * (size_t) loads);
   if (!A->tie) return SD_OK;
   const sd_rigid films = sd_bodies_films(A);
-  double *there = c->on_spheres + loads;
-  sd_rigid_move(&films, V, there);
+  const double *there = sd_rigid_moved(&films, V, c->on_spheres + loads);
   const sd_status status = sd_lubrication_apply(A->tie->L, there, c->on_spheres);
   for (long j = 0; j < loads; j++)
     answer->exerted[j] += c->on_spheres[j] - A->tie->L->carried[j];

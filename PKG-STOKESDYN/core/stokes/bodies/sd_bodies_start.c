@@ -100,13 +100,13 @@ static sd_status repair(sd_bodies_loop *c, double *guess)
   double *lacks = sd_bodies_motion_of(c, c->v.x);
   sd_bodies_collect(A, guess, c->on_spheres, lacks);
   if (A->tie) {
-    double *v = c->on_spheres, *borne = v + 6 * (long) A->spheres.n;
+    double *borne = c->on_spheres + 6 * (long) A->spheres.n;
     const sd_rigid films = sd_bodies_films(A);
-    sd_rigid_move(&films, V, v);
+    const double *v = sd_rigid_moved(&films, V, c->on_spheres);
     const sd_status status = sd_lubrication_apply(A->tie->L, v, borne);
     if (status != SD_OK) return status;
-    sd_rigid_collect(&films, borne, sd_bodies_count(A), dV);
-    for (long j = 0; j < sd_bodies_motions(c); j++) lacks[j] += dV[j];
+    const double *borne_there = sd_rigid_collected(&films, borne, sd_bodies_count(A), dV);
+    for (long j = 0; j < sd_bodies_motions(c); j++) lacks[j] += borne_there[j];
   }
   for (long j = 0; j < sd_bodies_motions(c); j++) lacks[j] = c->f[j] - lacks[j];
   c->tie_tolerance = sd_bodies_accuracy_of(c)->guess;

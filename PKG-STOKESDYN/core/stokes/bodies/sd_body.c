@@ -9,16 +9,15 @@
 
 void sd_bodies_move(const sd_bodies *A, const double *V, double *on_spheres, double *rows)
 {
-  const int through = A->points.whole != NULL;
-  sd_rigid_move(&A->spheres, V, through ? on_spheres : rows);
-  if (through) sd_rigid_move(&A->points, on_spheres, rows);
+  if (A->points.whole)
+    sd_rigid_move(&A->points, sd_rigid_moved(&A->spheres, V, on_spheres), rows);
+  else
+    sd_rigid_move(&A->spheres, V, rows);
 }
 
 const double *sd_bodies_move_spheres(const sd_bodies *A, const double *V, double *on_spheres)
 {
-  if (!A->points.whole) return V;
-  sd_rigid_move(&A->spheres, V, on_spheres);
-  return on_spheres;
+  return A->points.whole ? sd_rigid_moved(&A->spheres, V, on_spheres) : V;
 }
 
 int sd_bodies_next(const sd_bodies *A, const double *moved, sd_bodies_part *part)

@@ -29,3 +29,22 @@ void sd_rigid_collect(const sd_rigid *K, const double *parts, int wholes, double
     for (int d = 0; d < 3; d++) whole[3 + d] += couple[d];
   }
 }
+
+static int rigid_is_one(const sd_rigid *K)
+{
+  return !K->whole && !K->arm && K->width == 6;
+}
+
+const double *sd_rigid_moved(const sd_rigid *K, const double *V, double *v)
+{
+  if (rigid_is_one(K)) return V;
+  sd_rigid_move(K, V, v);
+  return v;
+}
+
+const double *sd_rigid_collected(const sd_rigid *K, const double *parts, int wholes, double *f)
+{
+  if (rigid_is_one(K)) return parts;
+  sd_rigid_collect(K, parts, wholes, f);
+  return f;
+}

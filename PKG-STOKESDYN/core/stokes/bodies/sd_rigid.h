@@ -28,8 +28,12 @@ static inline int sd_rigid_whole(const sd_rigid *K, int i)
 
 /* v [width n] = K V, V [6 wholes] */
 void sd_rigid_move(const sd_rigid *K, const double *V, double *v);
+/* K V: in v, or where K = 1 V itself */
+const double *sd_rigid_moved(const sd_rigid *K, const double *V, double *v);
 /* f [6 wholes] = K^T of parts [width n] */
 void sd_rigid_collect(const sd_rigid *K, const double *parts, int wholes, double *f);
+/* Likewise, in f or the parts themselves */
+const double *sd_rigid_collected(const sd_rigid *K, const double *parts, int wholes, double *f);
 
 SD_END_C
 #endif

@@ -25,14 +25,13 @@ static sd_status add_borne(const sd_bodies *A, const sd_rigid *K, int both, doub
                            sd_tie_room room, double *out)
 {
   sd_tie *t = A->tie;
-  double *v = room.spheres, *f = v + 6 * (long) t->L->n;
-  double *by_bodies = room.bodies + 6 * CG_VECTORS * (long) sd_bodies_count(A);
-  sd_rigid_move(K, V, v);
+  double *f = room.spheres + 6 * (long) t->L->n, *bodies = room.bodies + 6 * CG_VECTORS * (long) sd_bodies_count(A);
+  const double *v = sd_rigid_moved(K, V, room.spheres);
   const sd_status status = both ? sd_lubrication_apply_both(t->L, t->stiff, t->spring, v, f)
                                 : sd_lubrication_apply(t->L, v, f);
   t->products++;
   if (status != SD_OK) return status;
-  sd_rigid_collect(K, f, sd_bodies_count(A), by_bodies);
+  const double *by_bodies = sd_rigid_collected(K, f, sd_bodies_count(A), bodies);
   for (long j = 0; j < 6 * (long) sd_bodies_count(A); j++) out[j] += sign * by_bodies[j];
   return SD_OK;
 }

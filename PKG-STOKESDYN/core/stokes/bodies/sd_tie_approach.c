@@ -137,9 +137,9 @@ sd_status sd_tie_approach_push(const sd_bodies *A, const double *V, double *on_s
   const sd_world *world = &t->L->world;
   const int n = A->spheres.n, width = numbers_seen(A);
   double *v = t->face, *pushed = pushed_of(A);
-  if (V) sd_rigid_move(&A->spheres, V, on_spheres);
+  const double *moved = V ? sd_rigid_moved(&A->spheres, V, on_spheres) : NULL;
   for (long i = 0; V && i < n; i++)
-    for (int d = 0; d < 3; d++) v[width * i + d] += on_spheres[6 * i + d];
+    for (int d = 0; d < 3; d++) v[width * i + d] += moved[6 * i + d];
   if (world->refresh && world->ranks > 1) {
     const sd_status status = world->refresh(world->ctx, v, t->faces_there, width);
     if (status != SD_OK) return status;
