@@ -5,7 +5,8 @@
  * (t->above). Of S each rank has the factor of its own bodies with a pair above, and of the others in
  * these pairs, of which their ranks tell it what their elimination has left (sd_tie_border.h). Where the
  * borders of some rank meet, so that bodies which its elimination has coupled would be in no factor
- * together, each rank has all bodies of its borders, its own and the others (additive Schwarz):
+ * together, each rank has all bodies of its borders, its own and the others (additive Schwarz), among more
+ * than two ranks also those whose pairs across them are weak:
  *
  *   P^-1 = C^-T [ 1 of those eliminated; W (sum over ranks  R^T S_R^-1 R) W of those left ] C^-1
  *   S_R: the rows and columns of S of these bodies;   W = 1/sqrt(m) of a body that is in m factors
@@ -14,7 +15,7 @@
  * factor of all: there are as many products with films as on one rank (test_tie_ranks.c), and so there are
  * between two ranks, of which each S_R is S where borders meet. Among more, S_R ends behind the next
  * rank's border: a melt of shells takes as many or a fifth more on four ranks, spheres chained by stiff
- * pairs up to 2.1 times as many. Bodies of different W move against each other where they should move as
+ * pairs up to 1.9 times as many. Bodies of different W move against each other where they should move as
  * one, so that those with a stiff pair have at least W = 1/sqrt(2), which is that of all others but where
  * more than two ranks meet. Without weights a scene without stiff pairs takes 1.3 times as many on four
  * ranks. If all bodies of a rank were eliminated with those next to them, so that nobody told what is
