@@ -30,8 +30,8 @@ class BodyNoise {
   const sd_body_root *root(const Voice &, const sd_body &, const sd_ewald *split);
 
   Stamp made;
-  /* by shape; xi and a_ref over the radius of the body's largest point, in steps of 3 %: any root will do,
-   * and bodies of many radii, or a box that changes, need few. (0, 0): of the whole matrix */
+  /* by shape and sd_body_root_steps: any root will do, and bodies of many radii, or a box that changes, need
+   * few. (0, 0): of the whole matrix */
   std::map<std::tuple<const sd_body_shape *, int, int>, Owned<sd_body_root, sd_body_root_free>> all_roots;
   std::map<const sd_body_shape *, Owned<sd_body_follow, sd_body_follow_free>> all_follow;
 };

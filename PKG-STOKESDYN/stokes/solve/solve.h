@@ -133,9 +133,9 @@ class Solve : protected LAMMPS_NS::Pointers {
   double *make_room();
   void take_forces();
   std::vector<double> numbers(const sd_random_key &of_spheres) const;
+  std::vector<double> numbers_of_bodies(const sd_random_key &) const;
   void draw_slip(const Draw &draw);
   void find_followers();
-  void add_own();
   sd_drifter drifter() const { return {bodies.in_open_space().data(), follow.data()}; }
 };
 

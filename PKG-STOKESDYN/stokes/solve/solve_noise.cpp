@@ -4,12 +4,9 @@
 #include "keywords.h"
 #include "settings.h"
 
-#include "sd_linear.h"
-
 #include "domain.h"
 
 #include <algorithm>
-#include <cmath>
 
 using namespace LAMMPS_NS;
 
@@ -79,27 +76,6 @@ void Solve::find_followers()
   differs = left != 0.0;
 }
 
-/* What bodies that turn leave of the drift, constant in their axes: slip, and torque on their first sphere */
-void Solve::add_own()
-{
-  const sd_bodies &A = bodies.bodies;
-  const std::vector<sd_body> &all = bodies.in_open_space();
-  for (size_t b = 0; b < all.size(); b++) {
-    const sd_body_follow *own = follow[b];
-    if (!own || !own->slip || sd_bodies_known(&A, A.lone + (int) b) != SD_BODY_FREE) continue;
-    const size_t width = A.points.width;
-    double turned[3];
-    for (size_t i = 0; i < (size_t) own->n; i += 3) {
-      sd_multiply3(all[b].R, own->slip + i, turned);
-      double *there = &slip_left[width * all[b].row[i / width] + i % width];
-      for (size_t d = 0; d < 3; d++) there[d] += kT / all[b].eta * turned[d];
-    }
-    sd_multiply3(all[b].R, own->torque, turned);
-    const size_t point = all[b].row[0], sphere = A.points.whole ? A.points.whole[point] : point;
-    for (size_t d = 0; d < 3; d++) load_left[A.spheres.width * sphere + 3 + d] -= kT * turned[d];
-  }
-}
-
 void Solve::draw(const Draw &draw)
 {
   const sd_bodies &A = bodies.bodies;
@@ -128,64 +104,51 @@ void Solve::draw(const Draw &draw)
   if (status == SD_OK)
     status = sd_drifter_move(&A, &d, &all, scratch.data(), of_points.data(), of_films.data());
   if (status != SD_OK) fail_by(voice.of("half a step of noise"), status);
-  if (!differs) add_own();
+  if (!differs) sd_drifter_add_own(&A, &d, kT, slip_left.data(), load_left.data());
 }
 
 // --- what is left of the drift, by differences ---------------------------------------------------------
 
-/* Over the radius of the smallest sphere: the error falls with its square, that of rounding grows. */
-static const double FAR = 1e-4;
+/* Of each body, by the lowest of its tags */
+std::vector<double> Solve::numbers_of_bodies(const sd_random_key &of_bodies) const
+{
+  const size_t count = sd_bodies_count(&bodies.bodies);
+  std::vector<int64_t> tag(count, INT64_MAX);
+  std::vector<double> g(6 * count + 6);
+  for (int k = 0; k < scene.size(); k++) {
+    int64_t &of_body = tag[sd_rigid_whole(&bodies.bodies.spheres, k)];
+    of_body = std::min(of_body, scene.tag(k));
+  }
+  for (size_t b = 0; b < count; b++) sd_random_normals(&of_bodies, tag[b], 6, &g[6 * b]);
+  return g;
+}
 
 std::vector<double> Solve::random_moves(const Draw &draw)
 {
   const sd_bodies &A = bodies.bodies;
-  const size_t count = sd_bodies_count(&A), lone = bodies.first_clump();
-  std::vector<double> W(6 * count + 6), unit(6 * count + 6);
-  std::vector<int64_t> tag(count, INT64_MAX);
-  std::vector<double> size(count, scene.smallest());
-  reach = FAR * scene.smallest();
-  for (size_t k = 0; k < (size_t) scene.size(); k++) {
-    const size_t b = sd_rigid_whole(&A.spheres, (int) k);
-    const double *arm = &bodies.arms()[3 * k];
-    tag[b] = std::min(tag[b], scene.tag((int) k));
-    size[b] = std::max(size[b], std::sqrt(sd_dot(arm, arm)));
-  }
-  for (size_t b = 0; b < count; b++) {
-    double normals[6];
-    sd_random_normals(&draw.of_differences, tag[b], 6, normals);
-    for (size_t d = 0; d < 6; d++) {
-      const bool turning = d >= 3, free = !sd_bodies_velocity_known(&A, (int) b, (int) d) && (!turning || b >= lone);
-      const bool leaves = domain->dimension == 2 && d >= 2 && d < 5;
-      const double length = turning ? size[b] : 1.0;
-      if (!free || leaves) continue;
-      W[6 * b + d] = normals[d] / length;
-      unit[6 * b + d] = normals[d] * length;
-    }
-  }
+  const size_t count = sd_bodies_count(&A);
+  const std::vector<double> g = numbers_of_bodies(draw.of_differences);
+  std::vector<double> extent(count + 1), moves(6 * count + 6), W(6 * count + 6);
+  const int turning = (int) bodies.first_clump();
+  const sd_drifter_random random = {g.data(), scene.smallest(), turning, domain->dimension};
+  reach = sd_drifter_moves(&A, &random, extent.data(), moves.data(), W.data());
   of_moves.assign(sd_bodies_unknowns(&A) + 1, 0.0);
   const sd_drifter d = drifter();
-  sd_drifter_spread(&A, &d, unit.data(), of_moves.data());
-  for (double &w : W) w *= reach;
-  return W;
+  sd_drifter_spread(&A, &d, W.data(), of_moves.data());
+  return moves;
 }
 
-/* A W stays as it is, the matrices are those of the place. Torques of clumps act on their first sphere. */
+/* A W stays as it is, the matrices are those of the place. */
 void Solve::difference(double sign)
 {
   const sd_bodies &A = bodies.bodies;
   const size_t count = sd_bodies_count(&A), n = scene.size();
   std::vector<double> scratch(18 * count + 6 * n + sd_bodies_unknowns(&A) + 1), load(6 * count + 6);
-  const sd_status status = sd_drifter_difference(&A, of_moves.data(), sign * kT / (2.0 * reach), scratch.data(),
+  const sd_status status = sd_drifter_difference(&A, of_moves.data(), sign * part(), scratch.data(),
                                                  slip_left.data(), load.data());
   if (status != SD_OK)
     fail_by(Voice(lmp, StokesSettings::COMMAND).at_step().of("the drift by differences"), status);
-  std::vector<char> done(count + 1, 0);
-  for (size_t k = 0; k < n; k++) {
-    const size_t b = sd_rigid_whole(&A.spheres, (int) k);
-    for (size_t d = 3; d < 6 && !done[b] && b >= bodies.first_clump(); d++)
-      load_left[(size_t) A.spheres.width * k + d] += load[6 * b + d];
-    done[b] = 1;
-  }
+  sd_drifter_hand_on(&A, (int) bodies.first_clump(), load.data(), load_left.data());
 }
 
 void Solve::push()

@@ -96,3 +96,34 @@ sd_status sd_body_root_create(const sd_body_shape *s, double a, const sd_ewald *
   sd_body_root_free(out);
   return status == SD_ESINGULAR ? SD_OK : status;
 }
+
+/* --- which splitting a root is for --- */
+
+static const double STEP = 0.03;
+
+/* The length that splittings are over: the unit of the shape is often that of the run, on which nothing may
+ * depend. */
+static double largest_point(const sd_body_shape *s)
+{
+  double radius = s->radius[0];
+  for (int k = 1; k < s->m; k++) radius = fmax(radius, s->radius[k]);
+  return radius;
+}
+
+sd_body_root_steps sd_body_root_steps_of(const sd_body_shape *s, double a, const sd_ewald *split)
+{
+  const double length = a * largest_point(s);
+  return (sd_body_root_steps){(int) lround(log(split->xi * length) / STEP),
+                              (int) lround(log(split->a_ref / length) / STEP)};
+}
+
+sd_ewald sd_body_root_split(const sd_body_shape *s, const sd_body_root_steps *steps, const sd_ewald *split)
+{
+  const double length = largest_point(s);
+  sd_ewald unit = *split;
+  unit.xi = exp(STEP * steps->xi) / length;
+  unit.band = split->band * unit.xi / split->xi;
+  unit.range = split->range * split->xi / unit.xi;
+  unit.a_ref = exp(STEP * steps->a_ref) * length;
+  return unit;
+}

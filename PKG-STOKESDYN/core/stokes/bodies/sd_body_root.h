@@ -33,5 +33,16 @@ sd_status sd_body_root_create(const sd_body_shape *shape, double a, const sd_ewa
                               sd_body_root *out);
 void sd_body_root_free(sd_body_root *r);
 
+/* One root serves splittings that are about the same, for bodies of all sizes: in steps of 3 % of
+ *   log(xi a L)/0.03,   log(a_ref/(a L))/0.03,   to the nearest whole number
+ * L: radius of the largest point in the unit of the shape, a: as above. */
+typedef struct {
+  int xi, a_ref;
+} sd_body_root_steps;
+sd_body_root_steps sd_body_root_steps_of(const sd_body_shape *shape, double a, const sd_ewald *split);
+/* The splitting of these steps for a = 1. xi range and band/xi are those of split. */
+sd_ewald sd_body_root_split(const sd_body_shape *shape, const sd_body_root_steps *steps,
+                            const sd_ewald *split);
+
 SD_END_C
 #endif

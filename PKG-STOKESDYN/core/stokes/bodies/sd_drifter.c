@@ -1,5 +1,6 @@
 #include "sd_drifter.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "sd_bodies_alone.h"
@@ -149,4 +150,67 @@ sd_status sd_drifter_difference(const sd_bodies *A, const double *l, double part
   sd_bodies_collect(A, l, on_spheres, bodies);
   for (long j = 0; j < motions; j++) load[j] -= part * bodies[j];
   return SD_OK;
+}
+
+void sd_drifter_add_own(const sd_bodies *A, const sd_drifter *d, double kT, double *slip, double *load)
+{
+  const int w = A->points.width;
+  for (int b = 0; b < A->shaped; b++) {
+    const sd_body *body = d->body + b;
+    const sd_body_follow *own = d->follow[b];
+    if (!own || !own->slip || sd_bodies_known(A, A->lone + b) != SD_BODY_FREE) continue;
+    double turned[3];
+    for (int i = 0; i < own->n; i += 3) {
+      sd_multiply3(body->R, own->slip + i, turned);
+      double *there = slip + (long) w * body->row[i / w] + i % w;
+      for (int p = 0; p < 3; p++) there[p] += kT / (body->eta * body->a * body->a) * turned[p];
+    }
+    sd_multiply3(body->R, own->torque, turned);
+    double *first = load + (long) A->spheres.width * sd_rigid_whole(&A->points, body->row[0]);
+    for (int p = 0; p < 3; p++) first[3 + p] -= kT * turned[p];
+  }
+}
+
+/* Over the radius of the smallest sphere: the error of differences falls with its square, that of rounding
+ * grows. */
+static const double FAR = 1e-4;
+
+/* Is number d of the velocity of a body one by which it moves? */
+static int drifter_moves_by(const sd_bodies *A, const sd_drifter_random *random, int b, int d)
+{
+  const int in_plane = d < 2 || d == 5;
+  if (random->dimension == 2 && !in_plane) return 0;
+  return !sd_bodies_velocity_known(A, b, d) && (d < 3 || b >= random->turning);
+}
+
+double sd_drifter_moves(const sd_bodies *A, const sd_drifter_random *random, double *extent, double *moves,
+                        double *W)
+{
+  const double e = FAR * random->smallest;
+  for (int b = 0; b < sd_bodies_count(A); b++) extent[b] = random->smallest;
+  for (int k = 0; k < A->spheres.n && A->spheres.arm; k++) {
+    const double *arm = A->spheres.arm + 3 * (long) k;
+    double *of_body = extent + sd_rigid_whole(&A->spheres, k);
+    *of_body = fmax(*of_body, sqrt(sd_dot(arm, arm)));
+  }
+  for (int b = 0; b < sd_bodies_count(A); b++)
+    for (int d = 0; d < 6; d++) {
+      const long j = 6 * (long) b + d;
+      const double s = d < 3 ? 1.0 : extent[b];
+      const double g = drifter_moves_by(A, random, b, d) ? random->normals[j] : 0.0;
+      moves[j] = e * (g / s);
+      W[j] = g * s;
+    }
+  return e;
+}
+
+void sd_drifter_hand_on(const sd_bodies *A, int turning, double *of_bodies, double *load)
+{
+  for (int k = 0; k < A->spheres.n; k++) {
+    const int b = sd_rigid_whole(&A->spheres, k);
+    for (int d = 3; d < 6 && b >= turning; d++) {
+      load[(long) A->spheres.width * k + d] += of_bodies[6 * (long) b + d];
+      of_bodies[6 * (long) b + d] = 0.0;
+    }
+  }
 }

@@ -48,12 +48,35 @@ typedef struct {
 sd_status sd_drifter_move(const sd_bodies *A, const sd_drifter *d, const sd_drifter_push *push,
                           double *work, double *of_points, double *of_films);
 
+/* What the mean lacks where all bodies follow exactly (sd_body_follow.h), of those that are free, kT an
+ * energy: slip [points] += kT/(eta a^2) R slip_b, load [spheres] -= kT R torque_b, on the sphere of the
+ * body's first point. Where bodies have a slip, spheres are of width 6. */
+void sd_drifter_add_own(const sd_bodies *A, const sd_drifter *d, double kT, double *slip, double *load);
+
 /* What the mean lacks where sum_k (d_k M') A_k is left, by differences: of kT sum_k (d_k M') A_k as slip and
  * -kT sum_k (d_k K)^T A_k as load one term each, with l = A W / e, W random and of variance 1, the bodies at
  * x + e W and part = kT/2, then at x - e W and part = -kT/2. slip [points] += part M' l, load [6 bodies] -=
  * part K^T l. work [18 bodies + 6 spheres + points]. SD_OK; that of A->apply. */
 sd_status sd_drifter_difference(const sd_bodies *A, const double *l, double part, double *work, double *slip,
                                 double *load);
+
+/* W for these, and how far along it. Bodies from `turning` on turn, those before do not. smallest: radius of
+ * the smallest sphere of all ranks; dimension 2: all move in the plane of x and y, and turn about z. */
+typedef struct {
+  /* [6 bodies] standard normal numbers g */
+  const double *normals;
+  double smallest;
+  int turning, dimension;
+} sd_drifter_random;
+/* Returns e. moves [6 bodies] = e W' and W [6 bodies], for which <W'_k W_k> = 1 will do:
+ *   W' = W = g   of velocities,   W' = g/s, W = g s   of angular ones
+ * s: from the centre of the body to that of its farthest sphere, at least `smallest`. 0 where the velocity is
+ * given and where there is no such motion. extent [bodies]: scratch. */
+double sd_drifter_moves(const sd_bodies *A, const sd_drifter_random *random, double *extent, double *moves,
+                        double *W);
+/* load [spheres] += the torques of of_bodies [6 bodies] on those that turn, as torques on the first sphere of
+ * each, of width 6. They are 0 in of_bodies then. */
+void sd_drifter_hand_on(const sd_bodies *A, int turning, double *of_bodies, double *load);
 
 SD_END_C
 #endif

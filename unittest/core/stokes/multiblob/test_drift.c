@@ -153,17 +153,11 @@ static double difference_of(int n, const double *a, const double *b)
   return sqrt(off / all);
 }
 
-/* Velocities of what the bodies leave by themselves: slip and torque */
-static void add_own(const place_of *s, const scene_at *at, const sd_body_follow *follow, double *mean)
+/* Velocities of what the bodies leave by themselves */
+static void add_own(const place_of *s, const scene_at *at, const sd_drifter *d, double *mean)
 {
   double u[3 * POINTS] = {0.0}, F[6 * MOST] = {0.0}, answer[ANSWER];
-  for (int b = 0; b < s->n && follow->slip; b++) {
-    const sd_body *body = at->A.body + b;
-    double torque[3];
-    for (int i = 0; i < follow->n; i += 3) sd_multiply3(body->R, follow->slip + i, u + 3 * body->row[i / 3]);
-    sd_multiply3(body->R, follow->torque, torque);
-    for (int d = 0; d < 3; d++) F[6 * s->m * b + 3 + d] -= torque[d];
-  }
+  sd_drifter_add_own(&at->A, d, 1.0, u, F);
   solve_at(s, s, u, F, NONE, answer);
   for (int k = 0; k < 6 * s->n + 6; k++) mean[k] += answer[k];
 }
@@ -191,8 +185,7 @@ static void add_by_differences(const place_of *s, const scene_at *at, const sd_d
       blob_flock_free(here.f);
     }
   }
-  for (int b = 0; b < s->n && s->m; b++)
-    for (int e = 3; e < 6; e++) F[6 * s->m * b + e] = load[6 * b + e];
+  sd_drifter_hand_on(&at->A, s->m ? 0 : s->n, load, F);
   solve_at(s, s, slip, F, NONE, answer);
   for (int k = 0; k < 6 * s->n + 6; k++) mean[k] += answer[k];
   free(l);
@@ -236,7 +229,7 @@ static double error_of_drift(const place_of *s, int by_differences)
     if (size > 0.0) add_mean(s, &at.A, &d, NULL, F, mean);
   }
   if (by_differences || !follow.exact) add_by_differences(s, &at, &d, mean);
-  else add_own(s, &at, &follow, mean);
+  else add_own(s, &at, &d, mean);
   sd_bodies_noise_free(&noise);
   sd_body_root_free(&root);
   sd_body_follow_free(&follow);
