@@ -109,7 +109,7 @@ static void spreading_and_interpolation_agree(void **state)
       places p;
       double first[6 * N], F[6 * N];
       const int width = terms == 3 || (terms == 4 && points % 2) ? 6 : 3;
-      sd_window_fit(points, 2.25 * points, 1e-9, &w);
+      sd_window_fit(points, 2.25 * points, 0, 1e-9, &w);
       for (int k = -1; k < 3; k++) {
         const sd_isa isa = k < 0 ? SD_ISA_PLAIN : sets[k];
         if (!sd_isa_supported(isa)) continue;
@@ -130,23 +130,29 @@ static void spreading_and_interpolation_agree(void **state)
   free(brick);
 }
 
-/* Wherever a sphere stands its points add up to the same, and their slopes to 0. By the Kaiser-Bessel function alone
- * four points differ by 6e-4. */
-static void points_of_a_window_add_up(void **state)
+/* Wherever a sphere stands, and so for the slopes: the sums over its points of the window times 1, s and s^2 are the
+ * integrals. By the Kaiser-Bessel function alone those of four points differ by 6e-4 and more. */
+static void sums_over_points_of_a_window_are_integrals(void **state)
 {
   (void) state;
   for (int points = 4; points <= 16; points++) {
     sd_window w;
-    sd_window_fit(points, 2.25 * points, 1e-9, &w);
-    const double whole = sd_window_transform(points, 2.25 * points, 0.0);
+    const double beta = 2.25 * points, whole = sd_window_transform(points, beta, 0.0), theta = 1e-4;
+    sd_window_fit(points, beta, 2, 1e-9, &w);
     for (double v = -1.0; v <= 1.0; v += 0.125) {
-      double sum = 0.0, slope = 0.0;
-      for (int k = 0; k < points; k++)
+      double sum[3] = {0.0}, slope = 0.0;
+      for (int k = 0; k < points; k++) {
+        const double s = k + 1 - 0.5 * (v + 1.0 + points);
+        double phi = 0.0;
         for (int m = w.degree; m >= 0; m--) {
-          sum += w.coefficient[m][k] * pow(v, m);
+          phi += w.coefficient[m][k] * pow(v, m);
           slope += m > 0 ? m * w.coefficient[m][k] * pow(v, m - 1) : 0.0;
         }
-      CHECK_NEAR(sum, whole, 1e-11);
+        for (int m = 0; m < 3; m++) sum[m] += phi * pow(s, m);
+      }
+      CHECK_NEAR(sum[0], whole, 1e-11);
+      CHECK_NEAR(sum[1], 0.0, 1e-10);
+      CHECK_NEAR(sum[2], -whole * sd_window_slope(points, beta, theta) / theta, 1e-6);
       CHECK_NEAR(slope, 0.0, 1e-9);
     }
   }
@@ -161,7 +167,7 @@ static void three_terms_do_for_equal_spheres_with_torques(void **state)
   const cloud c = make(7, 0);
   places p;
   sd_window w;
-  sd_window_fit(6, 2.25 * 6, 1e-9, &w);
+  sd_window_fit(6, 2.25 * 6, 0, 1e-9, &w);
   for (int k = 0; k < 2; k++) {
     brick[k] = calloc(numbers, sizeof(double));
     sd_spreading s = spheres_on_a_brick(&c, &p, &w, 4, 6);
@@ -258,7 +264,7 @@ static void windows_of_floats_are_those_of_doubles(void **state)
       const int width = terms >= 3 ? 6 : 3;
       sd_window w;
       places p;
-      sd_window_fit(points, 2.3 * points, 1e-5, &w);
+      sd_window_fit(points, 2.3 * points, 0, 1e-5, &w);
       sd_spreading s = spheres_on_a_brick(&c, &p, &w, terms, width);
       floats_are_as_doubles(&s, &c, width);
     }
@@ -276,7 +282,7 @@ static void points_side_by_side_are_spread_like_any(void **state)
     sd_ewald_runs runs = {0};
     int sphere[N];
     uint64_t seed = 9;
-    sd_window_fit(points, 2.25 * points, 1e-5, &w);
+    sd_window_fit(points, 2.25 * points, 0, 1e-5, &w);
     sd_spreading s = spheres_on_a_brick(&c, &p, &w, 1, 3);
     for (int i = 0; i < N; i++) {
       sphere[i] = i + (i >= N - 6); /* the last shell in two halves */
@@ -428,7 +434,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(near_parts_agree),
       cmocka_unit_test(spreading_and_interpolation_agree),
-      cmocka_unit_test(points_of_a_window_add_up),
+      cmocka_unit_test(sums_over_points_of_a_window_are_integrals),
       cmocka_unit_test(three_terms_do_for_equal_spheres_with_torques),
       cmocka_unit_test(near_parts_of_floats_are_those_of_doubles),
       cmocka_unit_test(windows_of_floats_are_those_of_doubles),

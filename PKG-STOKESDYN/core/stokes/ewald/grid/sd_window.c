@@ -25,27 +25,47 @@ static long double window_at(int points, double beta, int k, long double v)
   return bessel_i0(beta * sqrtl(fmaxl(0.0L, 1.0L - tau * tau)));
 }
 
-/* What the points of a sphere with v add up to, over their mean: nearly 1, and divided out */
-static long double unevenness(int points, double beta, long double v)
+/* Of phi over all distances s: the mean of s^2 */
+static long double mean_square(int points, double beta)
 {
-  long double sum = 0.0L;
-  for (int k = 0; k < points; k++) sum += window_at(points, beta, k, v);
-  return sum / (bessel_i0(beta) * sd_window_transform(points, beta, 0.0));
+  const double theta = 1e-6;
+  return -sd_window_slope(points, beta, theta) / theta;
+}
+
+/* phi at all points of the sphere with v, times a constant or a parabola in s, the distance to the point, nearly 1: the
+ * sums of phi, or of phi, phi s and phi s^2, are the integrals of these then.
+ * With p and q, s and s^2 less what is not orthogonal, it has the parts 1, p and q that these sums give. */
+static void even_window(int points, double beta, int order, long double v, long double *phi)
+{
+  const long double whole = sd_window_transform(points, beta, 0.0), first = 0.5L * (1.0L - v - points);
+  long double sum[5] = {0.0L};
+  for (int k = 0; k < points; k++) {
+    phi[k] = window_at(points, beta, k, v);
+    for (int m = 0; m < 5; m++) sum[m] += phi[k] * powl(first + k, m);
+  }
+  const long double a = sum[1] / sum[0], p2 = sum[2] - a * sum[1];
+  const long double b = (sum[3] - 2.0L * a * sum[2] + a * a * sum[1]) / p2, g = p2 / sum[0];
+  const long double c1 = -(a + b), c0 = a * b - g;
+  const long double q2 = sum[4] + c1 * sum[3] + c0 * sum[2];
+  const long double of_p = -a * whole / p2, of_q = (mean_square(points, beta) + c0) * whole / q2;
+  for (int k = 0; k < points; k++) {
+    const long double s = first + k;
+    phi[k] *= whole / sum[0] + (order == 0 ? 0.0L : of_p * (s - a) + of_q * (s * s + c1 * s + c0));
+  }
 }
 
 /* Up to the highest degree that any point needs: beyond it all are below a part of the tolerance, which
  * second derivatives leave small. */
-void sd_window_fit(int points, double beta, double tolerance, sd_window *w)
+void sd_window_fit(int points, double beta, int order, double tolerance, sd_window *w)
 {
   enum { NODES = SD_WINDOW_TERMS + 8 };
-  long double series[SD_WINDOW_MOST_POINTS][NODES], unit[NODES];
+  long double phi[NODES][SD_WINDOW_MOST_POINTS], series[SD_WINDOW_MOST_POINTS][NODES];
   memset(w, 0, sizeof(*w));
   w->points = points;
-  for (int s = 0; s < NODES; s++)
-    unit[s] = 1.0L / (bessel_i0(beta) * unevenness(points, beta, sd_chebyshev_node(s, NODES)));
+  for (int s = 0; s < NODES; s++) even_window(points, beta, order, sd_chebyshev_node(s, NODES), phi[s]);
   for (int k = 0; k < points; k++) {
     long double sample[NODES];
-    for (int s = 0; s < NODES; s++) sample[s] = unit[s] * window_at(points, beta, k, sd_chebyshev_node(s, NODES));
+    for (int s = 0; s < NODES; s++) sample[s] = phi[s][k];
     sd_chebyshev_series(sample, NODES, series[k]);
     for (int m = w->degree + 1; m < SD_WINDOW_TERMS; m++)
       if (fabsl(series[k][m]) > 1e-4L * tolerance) w->degree = m;

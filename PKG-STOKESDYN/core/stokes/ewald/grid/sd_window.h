@@ -3,8 +3,10 @@
  *   phi(s) = I_0(beta sqrt(1 - tau^2))/I_0(beta),   tau = 2 s/P,   |s| <= P/2 grid spacings
  *
  * in each direction, P points wide. It is evaluated as a polynomial for each point, and its derivatives are
- * those of the polynomials. A sphere's points are divided by their sum, which would depend a little on where
- * it stands: a flow that is the same everywhere reaches it without error, and its derivatives are 0. */
+ * those of the polynomials. Sums over a sphere's points would depend a little on where it stands: they are
+ * multiplied by what is nearly 1, a constant, with which flows that are the same everywhere reach it without
+ * error, or a parabola, with which linear and parabolic ones do, as that of all spheres of an open box under
+ * equal forces. */
 #ifndef SD_WINDOW_H
 #define SD_WINDOW_H
 
@@ -27,8 +29,9 @@ typedef struct {
   double coefficient[SD_WINDOW_TERMS][SD_WINDOW_COLUMNS];
 } sd_window;
 
-/* Polynomials as long as the tolerance needs. */
-void sd_window_fit(int points, double beta, double tolerance, sd_window *w);
+/* Polynomials as long as the tolerance needs. order: 0, a constant; 2, a parabola, by which windows that are
+ * differentiated twice would mistake short waves more. */
+void sd_window_fit(int points, double beta, int order, double tolerance, sd_window *w);
 
 /* sum over the points of phi exp(-i theta s), theta = k h, as an integral: its transform, in grid
  * spacings */

@@ -67,9 +67,8 @@ static double beyond_of_alike(double KR, double Ka)
 /* b_i b_j (I_2 + J_2 hh) has k^4 more than I_0, and (b_i + b_j) (I_1 + J_1 hh) has k^2 more. At r = R the saddle is at
  * imaginary waves of the order of K^2 R, not K, so that these are larger by powers of K^2 R, and add up where b > 0.
  * As above they are sqrt(R) times
- *   3e-4 q^2 KR exp(-KR) (1 - (K a_ref)^2/23) times the rms of b_i b_j + c (b_i + b_j),   q = K^2 (KR - 3)^2,  c = 63/q,
- * the numbers found by integration for KR from 8 to 36.
- */
+ *   3e-4 q^2 KR exp(-KR) (1 - (K a_ref)^2/23) times the rms of b_i b_j + c (b_i + b_j), q = K^2 (KR - 3)^2, c = 63/q,
+ * the numbers found by integration for KR from 8 to 36. */
 static double unlike_in(double KR, double K, double Ka)
 {
   return 3e-4 * pow(K * (KR - 3.0), 4.0) * KR * exp(-KR) * hypot(0.2, 1.0 - Ka * Ka / 23.0);
@@ -200,7 +199,7 @@ int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, d
 double sd_splitting_beta(const sd_ewald *e, const splitting *by)
 {
   if (equal_turn(by)) return 2.3;
-  if (by->five) return 2.7;
+  if (by->five) return 2.5;
   const double heights = by->at_wall ? 0.016 * fmax(0.0, e->points - 10.0) : 0.0;
   if (by->fall == BAND ? !by->equal : by->slopes) return 2.42 - heights;
   return 2.25;
@@ -226,12 +225,12 @@ int sd_splitting_five_do(const sd_ewald *e)
 
 /* A flow that changes by a part of itself over a box reaches a sphere with an error that depends on where it stands on
  * the grid: the transform of the window at the wave of the grid over that at none, times its change from point to
- * point. (Of a flow that is the same everywhere there is none: sd_window.h.) The spheres of an open box make a flow of
- * 1.9 N a/L where equal forces act, N a/L of the order of hundreds. The number is from errors of 5000 and 30 000
- * spheres under such forces with windows of 5 to 8 points. */
+ * point. (Of a flow that is the same everywhere there is none, nor, for equal spheres, of a parabola: sd_window.h.) The
+ * spheres of an open box make a flow of 1.9 N a/L where equal forces act, N a/L of the order of hundreds. The number is
+ * from errors of 5000 and 30 000 spheres under such forces with windows of 5 to 8 points. */
 double sd_splitting_common_flow(const sd_ewald *e)
 {
-  if (e->box.periodic) return 0.0;
+  if (e->box.periodic || e->a_ref == e->largest) return 0.0;
   const double edge = cbrt(sd_ewald_volume(&e->box)), over = e->beta / e->points;
   const double alias = sinh(e->beta) / e->beta * e->points * sqrt(SD_PI * SD_PI - over * over);
   return 17.0 / alias * e->count * e->a_ref * e->spacing / (edge * edge);

@@ -122,6 +122,12 @@ static sd_status make_grid(sd_ewald_waves *w, const sd_world *world)
   return status == SD_OK && e->images.wall.sign ? raise_grid(w) : status;
 }
 
+/* Of sd_window.h: parabolas where all spheres are alike. Slits, whose waves have few planes, keep the constant. */
+static int order_of_window(const sd_ewald *e)
+{
+  return e->a_ref == e->largest && e->slab.planes == 0 ? 2 : 0;
+}
+
 sd_status sd_ewald_waves_create(sd_ewald_waves *w, const sd_ewald *e,
                                 const struct sd_ewald_kernels *kernels, int width,
                                 const sd_world *world)
@@ -135,7 +141,7 @@ sd_status sd_ewald_waves_create(sd_ewald_waves *w, const sd_ewald *e,
   w->kernels = kernels;
   w->width = width;
   turn_frame(w, turn);
-  sd_window_fit(e->points, e->beta, e->tolerance, &w->window);
+  sd_window_fit(e->points, e->beta, order_of_window(e), e->tolerance, &w->window);
   return make_grid(w, world);
 }
 
