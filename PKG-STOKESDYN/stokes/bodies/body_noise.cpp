@@ -13,7 +13,7 @@ const sd_body_root *BodyNoise::root(const Voice &voice, const sd_body &body, con
 {
   sd_body_root_steps steps = {};
   if (split) steps = sd_body_root_steps_of(body.shape, body.a, split);
-  const auto key = std::make_tuple(body.shape, steps.xi, steps.a_ref);
+  const Which key(body.shape, steps.xi, steps.a_ref, steps.range);
   const auto known = all_roots.find(key);
   if (known != all_roots.end()) return &known->second;
   sd_ewald unit = {};

@@ -31,8 +31,9 @@ class BodyNoise {
 
   Stamp made;
   /* by shape and sd_body_root_steps: any root will do, and bodies of many radii, or a box that changes, need
-   * few. (0, 0): of the whole matrix */
-  std::map<std::tuple<const sd_body_shape *, int, int>, Owned<sd_body_root, sd_body_root_free>> all_roots;
+   * few. (0, 0, 0): of the whole matrix */
+  using Which = std::tuple<const sd_body_shape *, int, int, int>;
+  std::map<Which, Owned<sd_body_root, sd_body_root_free>> all_roots;
   std::map<const sd_body_shape *, Owned<sd_body_follow, sd_body_follow_free>> all_follow;
 };
 

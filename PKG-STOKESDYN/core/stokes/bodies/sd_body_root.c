@@ -113,8 +113,9 @@ static double largest_point(const sd_body_shape *s)
 sd_body_root_steps sd_body_root_steps_of(const sd_body_shape *s, double a, const sd_ewald *split)
 {
   const double length = a * largest_point(s);
-  return (sd_body_root_steps){(int) lround(log(split->xi * length) / STEP),
-                              (int) lround(log(split->a_ref / length) / STEP)};
+  return (sd_body_root_steps){.xi = (int) lround(log(split->xi * length) / STEP),
+                              .a_ref = (int) lround(log(split->a_ref / length) / STEP),
+                              .range = (int) lround(log(split->xi * split->range) / STEP)};
 }
 
 sd_ewald sd_body_root_split(const sd_body_shape *s, const sd_body_root_steps *steps, const sd_ewald *split)
@@ -122,8 +123,8 @@ sd_ewald sd_body_root_split(const sd_body_shape *s, const sd_body_root_steps *st
   const double length = largest_point(s);
   sd_ewald unit = *split;
   unit.xi = exp(STEP * steps->xi) / length;
-  unit.band = split->band * unit.xi / split->xi;
-  unit.range = split->range * split->xi / unit.xi;
+  unit.range = exp(STEP * steps->range) / unit.xi;
+  unit.band = split->band * unit.xi * unit.xi * unit.range / (split->xi * split->xi * split->range);
   unit.a_ref = exp(STEP * steps->a_ref) * length;
   return unit;
 }

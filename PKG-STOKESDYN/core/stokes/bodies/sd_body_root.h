@@ -34,13 +34,14 @@ sd_status sd_body_root_create(const sd_body_shape *shape, double a, const sd_ewa
 void sd_body_root_free(sd_body_root *r);
 
 /* One root serves splittings that are about the same, for bodies of all sizes: in steps of 3 % of
- *   log(xi a L)/0.03,   log(a_ref/(a L))/0.03,   to the nearest whole number
+ *   log(xi a L)/0.03,   log(a_ref/(a L))/0.03,   log(xi range)/0.03,   to the nearest whole number
  * L: radius of the largest point in the unit of the shape, a: as above. */
 typedef struct {
-  int xi, a_ref;
+  int xi, a_ref, range;
 } sd_body_root_steps;
 sd_body_root_steps sd_body_root_steps_of(const sd_body_shape *shape, double a, const sd_ewald *split);
-/* The splitting of these steps for a = 1. xi range and band/xi are those of split. */
+/* The splitting of these steps for a = 1, whichever of those that have these steps split is:
+ * band/(xi^2 range) and all that a root does not ask for are those of split. */
 sd_ewald sd_body_root_split(const sd_body_shape *shape, const sd_body_root_steps *steps,
                             const sd_ewald *split);
 

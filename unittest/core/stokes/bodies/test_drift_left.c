@@ -157,7 +157,8 @@ static void torques_are_handed_to_one_sphere(void **state)
   CHECK_NEAR(load[9], before[9], 0.0);
 }
 
-/* Half a step of 3 % at most off, the same in all units of length and for a body of any size in its own splitting */
+/* Half a step of 3 % at most off, the same in all units of length, for a body of any size in its own splitting, and
+ * whichever of the splittings of these steps comes first: a run that is cut goes on as the whole one */
 static void a_root_is_of_a_splitting_over_the_size(void **state)
 {
   (void) state;
@@ -165,9 +166,10 @@ static void a_root_is_of_a_splitting_over_the_size(void **state)
   const sd_body_shape shape = {.m = 3, .radius = radius}, in_other_unit = {.m = 3, .radius = larger};
   const double a = 1.9, times = 31.0;
   for (double xi = 0.03; xi < 3.0; xi *= 1.117) {
-    const sd_ewald split = {.xi = xi, .band = 8.0 * xi, .range = 3.1 / xi, .a_ref = 0.9};
-    sd_ewald scaled = split;
-    scaled.xi /= times, scaled.a_ref *= times;
+    const sd_ewald split = {.xi = xi, .band = 6.2 * xi, .range = 3.1 / xi, .a_ref = 0.9};
+    sd_ewald scaled = split, alike = split;
+    scaled.xi /= times, scaled.a_ref *= times, scaled.range *= times;
+    alike.range *= 1.001, alike.band *= 1.001;
     const sd_body_root_steps steps = sd_body_root_steps_of(&shape, a, &split);
     const sd_body_root_steps large = sd_body_root_steps_of(&shape, a * times, &scaled);
     const sd_body_root_steps other = sd_body_root_steps_of(&in_other_unit, a / 2.5, &split);
@@ -176,8 +178,13 @@ static void a_root_is_of_a_splitting_over_the_size(void **state)
     const sd_ewald unit = sd_body_root_split(&shape, &steps, &split);
     CHECK_NEAR(log(unit.xi / (split.xi * a)), 0.0, 0.015 * (1.0 + 1e-9));
     CHECK_NEAR(log(unit.a_ref * a / split.a_ref), 0.0, 0.015 * (1.0 + 1e-9));
-    CHECK_NEAR(unit.xi * unit.range, 3.1, 1e-13);
-    CHECK_NEAR(unit.band / unit.xi, 8.0, 1e-13);
+    CHECK_NEAR(log(unit.xi * unit.range / 3.1), 0.0, 0.015 * (1.0 + 1e-9));
+    CHECK_NEAR(unit.band / (2.0 * unit.xi * unit.xi * unit.range), 1.0, 1e-13);
+    const sd_body_root_steps near = sd_body_root_steps_of(&shape, a, &alike);
+    const sd_ewald same = sd_body_root_split(&shape, &near, &alike);
+    assert_true(near.range == steps.range && near.range == large.range && near.range == other.range);
+    CHECK_NEAR(same.range / unit.range, 1.0, 1e-14);
+    CHECK_NEAR(same.band / unit.band, 1.0, 1e-14);
   }
 }
 
