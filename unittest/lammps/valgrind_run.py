@@ -64,7 +64,7 @@ def script(folder):
     lines += scene("open", f"cut_off_distance inf {COMMON} far_field ewald far_field_tolerance 1e-3") + MOVE + [
         "run 2", "clear"]
     loose = "cut_off_distance inf visc 1.3 algorithm 2 relative_tolerance 0.5"
-    lines += scene("levels", f"{loose} far_field_tolerance 1e-2", wide(), boundary="p p p", box=[(-11.0, 11.0)] * 3)
+    lines += scene("levels", f"{loose} far_field_tolerance 1e-3", wide(), boundary="p p p", box=[(-11.0, 11.0)] * 3)
     lines += MOVE + ["run 1", "clear"]
     lines += scene("all", f"cut_off_distance inf {COMMON}",
                    before_pair="variable s atom 1+0.1*x\nvariable u equal 0.1*step")
