@@ -188,6 +188,19 @@ def random_scene(newton="on", before="", density="continuity"):
     """ % (B, RHO0, GAMMA, density)
 
 
+# water 1 wide and 10 particles to a length, with room for openings and walls around it
+BASIN = """
+units lj
+dimension 2
+atom_style sph
+atom_modify map array
+boundary f f p
+lattice sq 100 origin 0.5 0.5 0
+region all block -0.7 1.7 -0.4 2 -0.05 0.05 units box
+create_box 2 all
+"""
+
+
 def mpirun(ranks, script, directory, name="in.test"):
     """Runs an input script with lmp on some ranks."""
     path = os.path.join(str(directory), name)

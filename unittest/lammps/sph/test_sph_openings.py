@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from host import at_most
-from sph_tools import by_id, fix_by_id, mpirun, run, start
+from sph_tools import BASIN, by_id, fix_by_id, mpirun, run, start
 from test_sph_input import message
 
 PIPE = """
@@ -65,15 +65,7 @@ def test_no_mass_is_made_where_the_flow_turns_back():
     lmp.close()
 
 
-STILL = """
-units lj
-dimension 2
-atom_style sph
-atom_modify map array
-boundary f f p
-lattice sq 100 origin 0.5 0.5 0
-region all block -0.7 1.7 -0.4 2 -0.05 0.05 units box
-create_box 2 all
+STILL = BASIN + """
 region water block INF INF 0 1 INF INF units box
 region floor block INF INF INF 0 INF INF units box
 create_atoms 1 region water

@@ -3,17 +3,9 @@ import numpy as np
 import pytest
 
 from host import at_most
-from sph_tools import by_id, mpirun, run, start
+from sph_tools import BASIN, by_id, mpirun, run, start
 
-TANK = """
-units lj
-dimension 2
-atom_style sph
-atom_modify map array
-boundary f f p
-lattice sq 100 origin 0.5 0.5 0
-region all block -0.7 1.7 -0.4 2 -0.05 0.05 units box
-create_box 2 all
+TANK = BASIN + """
 region low block INF 1 0 0.5 INF INF units box
 region floor block INF 1.4 INF 0 INF INF units box
 region end block 1 1.4 0 1.6 INF INF units box

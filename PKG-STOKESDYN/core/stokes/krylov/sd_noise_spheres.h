@@ -15,11 +15,13 @@ typedef struct {
   /* Omega; NULL: nobody sees anybody */
   sd_apply *apply;
   void *ctx;
-  /* [engine_width n] for the engine, zero at the beginning: forces with torques that stay 0, and velocities */
+  /* [engine_width n] for the engine, zero at the beginning: forces with torques that stay 0, and
+   * velocities */
   double *F, *u;
 } sd_noise_spheres;
 
-/* Of the matrix M, with the spheres as context: u = M F, both [width n]; 0 where D is. The status of apply. */
+/* Of the matrix M, with the spheres as context: u = M F, both [width n]; 0 where D is. The status of
+ * apply. */
 sd_status sd_noise_spheres_apply(void *spheres, const double *F, double *u);
 
 /* y [width n] += the first numbers of each row of the engine's u [engine_width n] */
