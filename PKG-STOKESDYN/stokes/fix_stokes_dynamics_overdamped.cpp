@@ -176,6 +176,7 @@ void FixStokesDynamicsOverdamped::set_up()
   Hydrodynamics &hydro = hydrodynamics();
   hydro.begin();
   find_drives(hydro);
+  if (noise.on()) noise.warn_of_repeats(last.step);
   const bool same_run = goes_on(hydro);
   if (!same_run || !causes_stand(hydro)) {
     before.clear();

@@ -240,6 +240,29 @@ void PairStokesDynamics::look_at_neighbours()
                          fact(TURNING, hydro.rotation()) |
                          fact(RESTING, hydro.ambient.settings.rests()),
                      [&](int i) { return chosen[i] && (atom->mask[i] & bits) ? FREE : 0u; });
+  if (bits != 0 && bits != ~0) warn_of_undragged(chosen, bits);
+}
+
+/* Does a fix integrate spheres that take part, but to which no fix stokes_dynamics adds the force? Those of
+ * fix move have a given velocity, and others may be held. */
+void PairStokesDynamics::warn_of_undragged(const std::vector<char> &chosen, int dragged)
+{
+  int moved = 0, given = 0;
+  for (int k = 0; k < modify->nfix; k++) {
+    const Fix *fix = modify->fix[k];
+    const std::string style = plain_style(fix->style);
+    if (style == "move" || style == "setforce" || style == "freeze") given |= fix->groupbit;
+    else if (fix->time_integrate) moved |= fix->groupbit;
+  }
+  const int *mask = atom->mask;
+  const tagint first = first_atom(lmp, [&](int i) {
+    return chosen[i] && (mask[i] & moved) && !(mask[i] & (dragged | given));
+  });
+  if (!first || warned_undragged) return;
+  warned_undragged = true;
+  voice.warn("atom " + std::to_string(first) + " takes part and is moved, but no fix stokes_dynamics applies its "
+             "force: others feel it, and it feels no fluid; give that fix all spheres that take part, or keyword "
+             "group only those of its group");
 }
 
 /* Those of the command, and where walls at sides of the box stand: that may have changed */

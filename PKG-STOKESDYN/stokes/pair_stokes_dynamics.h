@@ -42,7 +42,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   double largest_diameter = 0.0;
   /* for compute pair: iterations, residual, unconverged solves, dissipation */
   double reported[4] = {0.0};
-  bool warned_nobody_applies = false;
+  bool warned_nobody_applies = false, warned_undragged = false;
   /* by whom forces were last found: the step, the lists that LAMMPS had made in this run, the run */
   struct {
     LAMMPS_NS::bigint step, builds;
@@ -50,6 +50,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   Stamp asked_in;
   Neighbourhood neighbourhood;
   void look_at_neighbours();
+  void warn_of_undragged(const std::vector<char> &chosen, int dragged);
 
   /* What the force of a step needs. */
   enum Verdict {

@@ -32,6 +32,10 @@ def note(kind, value):
     notes.append((kind, float(value) if isinstance(value, float) else value))
 
 
+# Styles that the LAMMPS of the set-up lacks, by a plugin (styles_of_today.cpp)
+STYLES_OF_TODAY = os.path.join(os.environ.get("LAMMPS_PLUGIN_PATH", ""), "wrong", "stylesoftoday.so")
+
+
 class Spheres:
     """n spheres: x [n,3], radius a, velocity v and molecule ID (each one value or one a sphere), bonds as pairs of atom
     IDs."""

@@ -186,6 +186,15 @@ void Noise::announce(const Hydrodynamics &hydro, double smallest, double drag) c
                "skin");
 }
 
+void Noise::warn_of_repeats(double last_step)
+{
+  if (told_of_repeats || last_step <= (double) update->ntimestep) return;
+  told_of_repeats = true;
+  voice.at_step().warn("keyword temperature: noise of steps up to " + text(last_step) + " was drawn with this seed "
+                       "before reset_timestep, and the same random numbers come again: give the fix anew with "
+                       "another seed");
+}
+
 // --- what has a drift that the schemes leave out, or noise of its own or none ---------------------
 
 static const std::string PAIR = " of pair_style stokes_dynamics";

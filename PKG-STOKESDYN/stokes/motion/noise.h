@@ -66,6 +66,8 @@ class Noise : protected LAMMPS_NS::Pointers {
 
   /* Once: what has been drawn, and how far it moves the smallest sphere, 1/drag its mobility */
   void announce(const Hydrodynamics &hydro, double smallest, double drag) const;
+  /* Once: does the run begin before the step of which random numbers were drawn last? */
+  void warn_of_repeats(double last_step);
   /* Of the last root: products with M (its near part, where the sum is split), e of sd_noise.h */
   const sd_noise_report &report() const { return last; }
 
@@ -86,7 +88,7 @@ class Noise : protected LAMMPS_NS::Pointers {
   /* by a matrix in two parts (sd_mobility.h) */
   bool divided = false;
   /* noise is a slip; a part that should be positive was not, and the user knows */
-  bool midpoint = false, told_of_whole = false;
+  bool midpoint = false, told_of_whole = false, told_of_repeats = false;
 
   sd_random_key key(sd_random_purpose what) const;
   void refuse(const Hydrodynamics &hydro, const Ways &ways) const;

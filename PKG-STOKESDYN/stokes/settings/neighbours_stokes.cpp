@@ -31,6 +31,9 @@ namespace StokesDyn {
 /* Those whose settings a restart file tells in the order of Contact */
 static const char CONTACTS[] = "gran/hooke gran/hooke/history gran/hertz/history";
 
+/* Fixes with a drag by the velocity, most of them with noise */
+static const char DRAGGING[] = "viscous langevin* gld gle gjf ffl ttm* nve/dotc/langevin electron/stopping*";
+
 /* false: it does not tell */
 static bool read_contact(Pair *pair, Contact &contact)
 {
@@ -135,6 +138,19 @@ static bool remaps_v(const Guest &guest, std::string &)
 static bool stands_before_drag(const Guest &guest, std::string &)
 {
   return !stands_behind(guest, "stokes_dynamics");
+}
+
+/* It sees what the pair style adds, and what a fix has added before. */
+static bool scales_drag(const Guest &guest, std::string &)
+{
+  return fixes_of(guest.lmp, "stokes_dynamics").empty() || stands_behind(guest, "stokes_dynamics");
+}
+
+/* fix propel/self: without dipoles and quaternions only its mode velocity is left */
+static bool follows_velocities(const Guest &guest, std::string &)
+{
+  const Atom *atom = guest.lmp->atom;
+  return !atom->mu_flag && !atom->ellipsoid_flag;
 }
 
 static bool stands_before_motion(const Guest &guest, std::string &)
@@ -256,11 +272,11 @@ using N = Neighbour;
 
 const std::vector<Neighbour> stokes_neighbours = {
     // another drag, other noise
-    {N::FIX, "viscous langevin*", FORCE, N::ERROR,
+    {N::FIX, DRAGGING, FORCE, N::ERROR,
      "adds a drag to spheres that the fluid drags as well, so that drag counts twice: take out "
      "this fix or the pair style; for noise that goes with the fluid use fix "
      "stokes_dynamics/overdamped with temperature"},
-    {N::FIX, "viscous langevin*", OVERDAMPED, N::ERROR,
+    {N::FIX, DRAGGING, OVERDAMPED, N::ERROR,
      "adds a drag to spheres that the fluid drags as well: take it out; noise is the keyword "
      "temperature of fix stokes_dynamics/overdamped"},
     {N::FIX, "viscous/sphere", TURNING, N::ERROR,
@@ -305,13 +321,16 @@ const std::vector<Neighbour> stokes_neighbours = {
     {N::FIX, "setforce freeze", OVERDAMPED, N::WARNING,
      "sets forces, and without inertia a force of 0 does not hold a sphere: use keyword held GROUP, or pin "
      "GROUP for spheres that turn in their place", nullptr, FREE},
-    {N::FIX, "setforce freeze planeforce lineforce aveforce", APPLIED, N::WARNING,
+    {N::FIX, "setforce freeze planeforce lineforce aveforce flow/gauss", APPLIED, N::WARNING,
      "stands before fix stokes_dynamics in the input, whose drag then moves what it holds: define it "
      "behind", stands_before_drag},
     {N::FIX, "planeforce lineforce", OVERDAMPED, N::WARNING,
      "takes away forces across its plane or line, and without inertia spheres leave it all the same, since "
      "they move with the fluid: hold them there by springs (fix spring/self K z for planes of constant z)",
      nullptr, FREE},
+    {N::FIX, "flow/gauss", OVERDAMPED, N::WARNING,
+     "takes the mean force away, and without inertia no flow is left then: give the flow by keyword fluid_velocity "
+     "of the pair style", nullptr, FREE},
     {N::FIX, "wall/reflect*", OVERDAMPED | MIDWAY, N::ERROR,
      "stands before fix stokes_dynamics/overdamped in the input, whose step it then does not see, so that "
      "spheres stay behind its wall until the next one: define it behind", stands_before_motion},
@@ -319,6 +338,17 @@ const std::vector<Neighbour> stokes_neighbours = {
      "pushes the atoms of its group, which turns the group and not the spheres, and does nothing "
      "to a single sphere: a torque on spheres is the keyword torque of fix "
      "stokes_dynamics/overdamped", has_one_atom},
+
+    {N::FIX, "temp/* momentum* oneway heat ehex viscosity thermal/conductivity wall/flow", OVERDAMPED, N::WARNING,
+     "changes velocities, which without inertia follow from forces and flow: what is printed changes, but not the "
+     "path of the spheres: take it out", nullptr, FREE},
+    {N::FIX, "nvt* npt* nvk temp/*", FORCE, N::WARNING,
+     "changes velocities to hold a temperature, as a drag or a push beside that of the fluid, so that spheres neither "
+     "settle nor flow as the fluid has it: use fix nve/sphere; for noise fix stokes_dynamics/overdamped with "
+     "temperature"},
+    {N::FIX, "damping/cundall", FORCE, N::WARNING,
+     "makes forces larger that oppose a velocity, and so also the drag of the fluid, unless it stands before fix "
+     "stokes_dynamics (add_force no) in the input", scales_drag},
 
     // boxes that change
     {N::FIX, "deform*", OVERDAMPED | ADAPTING, N::ERROR,
@@ -346,6 +376,9 @@ const std::vector<Neighbour> stokes_neighbours = {
     {N::FIX, "wall/gran*", OVERDAMPED | NOISE, N::WARNING,
      "must have no friction, which would depend on velocities without noise; this cannot be "
      "checked"},
+    {N::FIX, "propel/self", OVERDAMPED, N::ERROR,
+     "pushes spheres along their velocities (mode velocity), which would be those of the step before: use mode "
+     "dipole, with atom_style dipole and spheres that turn", follows_velocities},
     {N::FIX, "damping/cundall", OVERDAMPED, N::ERROR,
      "makes forces smaller by the velocities of the step before: take it out"},
     {N::PAIR, "*dpd* bpm/spring", OVERDAMPED, N::ERROR,
@@ -392,8 +425,6 @@ const std::vector<Neighbour> stokes_neighbours = {
 
     // what goes together
     {N::FIX, "move setforce freeze", OVERDAMPED, N::FINE, "go with spheres of keyword held"},
-    {N::FIX, "temp/* momentum", OVERDAMPED, N::FINE,
-     "change the velocities that are printed, not the path"},
 };
 
 }    // namespace StokesDyn

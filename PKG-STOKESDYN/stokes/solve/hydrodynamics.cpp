@@ -259,22 +259,23 @@ static std::string how_far(const sd_solve_report &report)
       std::to_string(report.iterations);
 }
 
-/* Algorithm 1 converges for pairs and small clumps only. Where it cannot, 2 goes on, in this solve
- * and from now on: a run is not stranded by its default. */
+/* Algorithm 1 converges for pairs and small clumps only. Where it cannot, or is too slow, 2 goes on, in
+ * this solve and from now on: a run is not stranded by its default. */
 sd_status Hydrodynamics::find_forces(sd_solve_report &report)
 {
   const Solve::How how = {Guess::FORCES, settings.tolerance, settings.max_iter};
   if (!bodies.joined() && algorithm() == StokesSettings::SUBSTITUTION) {
     const sd_status status = solver.substitution(how, report);
     fail_if_alone(where(StokesSettings::SUBSTITUTION), status);
-    if (status != SD_EDIVERGED || settings.strict) {
+    const bool slow = status == SD_EMAXITER && settings.max_iter >= StokesSettings::ENOUGH_SUBSTITUTIONS;
+    if ((status != SD_EDIVERGED && !slow) || settings.strict) {
       if (settings.scene.boundary.walled()) look_at_step(report, false);
       return status;
     }
     memory->global.diverged = 1;
     where(StokesSettings::SUBSTITUTION)
-        .warn("diverged: " + how_far(report) +
-              "; the run goes on with algorithm 2 ('algorithm 1 strict' stops)");
+        .warn((slow ? "too slow: " : "diverged: ") + how_far(report) + "; the run goes on with algorithm 2 " +
+              (slow ? "('algorithm 1 strict' does not)" : "('algorithm 1 strict' stops)"));
   }
   if (bodies.joined()) bodies.assemble();
   const sd_status status = bodies.joined() ? solver.run(how, report) : solver.gradients(how, report);

@@ -463,6 +463,19 @@ def test_steps_that_are_too_long_are_warned_of(tmp_path):
     assert "of its radius: use a shorter time step" in text and "skin" not in text
 
 
+def test_steps_that_come_again_have_the_same_numbers_and_are_warned_of(simulation, tmp_path):
+    """The way out, another seed, has others, and runs that go on have no word."""
+    sim = noise(simulation(Spheres(TRIO, A), INF, fix=False, dt=1e-3, log=tmp_path / "log"))
+    moved, x = [], sim.x
+    for before in ("", "reset_timestep 0", "reset_timestep 0\nunfix move\n" + MOVE.format(KT, 9)):
+        sim.commands(before).run(5).run(5)
+        moved.append(sim.x - x)
+        x = sim.x
+    told = " ".join((tmp_path / "log").read_text().split())
+    assert told.count("noise of steps up to 10 was drawn with this seed before reset_timestep") == 1
+    assert np.abs(moved[1] / moved[0] - 1).max() < 0.05 < np.abs(moved[2] / moved[0] - 1).min()
+
+
 def test_a_temperature_that_follows_a_compute_is_that_of_the_step(simulation):
     """Whenever thermo output is written; the sphere in front goes fast, and the temperature with it."""
     ends = []

@@ -134,6 +134,20 @@ def test_nothing_is_said_when_somebody_applies(simulation, tmp_path, style, fix)
     assert warnings_of_nobody(simulation, tmp_path, style, fix) == 0
 
 
+@pytest.mark.parametrize("words, fixes, told", [
+    ("", "fix drag some stokes_dynamics\nfix move all nve/sphere", True),
+    ("", "fix drag some stokes_dynamics\nfix move some nve/sphere", False),
+    ("", "fix drag some stokes_dynamics\nfix move all nve/sphere\nfix hold others setforce 0 0 0", False),
+    ("", "fix drag all stokes_dynamics\nfix move all nve/sphere", False),
+    ("group some", "fix drag some stokes_dynamics\nfix move all nve/sphere", False)])
+def test_spheres_that_move_without_their_force_are_told_once(simulation, tmp_path, words, fixes, told):
+    log = tmp_path / "log"
+    sim = simulation(five(), f"{EXACT} {words}", fix=False, log=log,
+                     before_pair="group some id 1 3\ngroup others subtract all some")
+    sim.commands(fixes).run(1).run(1).close()
+    assert log.read_text().count("atom 2 takes part and is moved, but no fix stokes_dynamics applies its") == told
+
+
 def test_fix_before_or_after_others_does_not_matter(simulation):
     spheres = five()
     sim = simulation(spheres, EXACT).commands("fix pull all addforce 1 2 3").run()

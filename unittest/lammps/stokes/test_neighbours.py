@@ -1,12 +1,11 @@
 """Other commands of LAMMPS beside the Stokes styles: each row of the table of neighbours (common/neighbours.h) says
 what the page says, and says nothing of the same command on other atoms."""
-import os
 import re
 
 import pytest
 
 from neighbour_tables import KINDS, names_of_rows
-from system import LammpsError, lmp, there
+from system import STYLES_OF_TODAY, LammpsError, lmp, there
 from test_loading import lammps_source
 
 OVERDAMPED = "fix move ours stokes_dynamics/overdamped"
@@ -61,8 +60,6 @@ def listed(move):
     return lambda ours: scene() + [name("others" if ours else "ours"), *move.splitlines()]
 
 
-# styles that the LAMMPS of the set-up lacks, by a plugin (styles_of_today.cpp)
-STYLES_OF_TODAY = os.path.join(os.environ["LAMMPS_PLUGIN_PATH"], "wrong", "stylesoftoday.so")
 TODAY = f"plugin load {STYLES_OF_TODAY}"
 
 
@@ -73,9 +70,11 @@ def bonded(style, gamma):
 
 HOOKE = "gran/hooke/history 10 NULL {} NULL {} 0"
 GRAN = "PAIR gran/hooke gran/hooke/history gran/hertz/history"
-LANGEVIN = "FIX viscous langevin*"
+LANGEVIN = "FIX viscous langevin* gld gle gjf ffl ttm* nve/dotc/langevin electron/stopping*"
 TURNLESS = "FIX nve nve/limit nvt npt nph"
-HOLDING = "FIX setforce freeze planeforce lineforce aveforce"
+HOLDING = "FIX setforce freeze planeforce lineforce aveforce flow/gauss"
+PRINTED = "FIX temp/* momentum* oneway heat ehex viscosity thermal/conductivity wall/flow"
+THERMOSTATS = "FIX nvt* npt* nvk temp/*"
 PRESSURE = "COMPUTE pressure* stress/* centroid/stress/*"
 VANS = "hydro/vans 1 mesh 10 1 -9 fluid 1 1 gravity 0.1 0 -1 phi_max 0.6 area 100"
 BONDS = "\n".join(["bond_style harmonic", "bond_coeff 1 1 2.5"] + [f"create_bonds single/bond 1 {both}"
@@ -91,6 +90,8 @@ CASES = [
      "fix b of style viscous adds a drag to spheres that the fluid drags as well: take"),
     (LANGEVIN, "OVERDAMPED", fixed("fix b GROUP langevin 1 1 1 77"),
      "noise is the keyword temperature of fix stokes_dynamics/overdamped"),
+    (LANGEVIN, "FORCE", fixed("fix b GROUP gld 1 1 1 77 pprony 1 1", "fix drag ours stokes_dynamics"),
+     "fix b of style gld adds a drag to spheres that the fluid drags as well, so"),
     (LANGEVIN, "OVERDAMPED", fixed("fix b GROUP viscous/omp 1", before=TODAY),
      "fix b of style viscous/omp adds a drag to spheres that the fluid drags as well: take"),
     ("FIX viscous/sphere", "TURNING", fixed("fix b GROUP viscous/sphere 1", INERTIA, words=TURN, before=TODAY),
@@ -135,6 +136,22 @@ CASES = [
     ("COMMAND neigh_modify", "0", listed(OVERDAMPED),
      "neigh_modify has include others, which leaves out atom 1: its forces of all steps add up"),
     ("COMMAND neigh_modify", "0", listed(INERTIA), "neigh_modify has include others, which leaves out atom 1"),
+    ("FIX flow/gauss", "OVERDAMPED", fixed("fix b GROUP flow/gauss 1 0 0"),
+     "fix b of style flow/gauss takes the mean force away"),
+    ("FIX propel/self", "OVERDAMPED", fixed("fix b GROUP propel/self velocity 1"),
+     "fix b of style propel/self pushes spheres along their velocities"),
+    (PRINTED, "OVERDAMPED", fixed("fix b GROUP momentum 1 linear 1 1 1"),
+     "fix b of style momentum changes velocities, which without inertia follow"),
+    (PRINTED, "OVERDAMPED", fixed("fix b GROUP temp/berendsen 1 1 1", before="velocity all create 1 77\n"
+                                     "fix w ours addforce 1 0 0"),
+     "fix b of style temp/berendsen changes"),
+    (THERMOSTATS, "FORCE", fixed("fix b GROUP nvt/sphere temp 1 1 1", "fix drag ours stokes_dynamics"),
+     "fix b of style nvt/sphere changes velocities to hold a temperature"),
+    (THERMOSTATS, "FORCE", fixed("fix b GROUP temp/rescale 1 1 1 0.1 1", INERTIA, before="velocity all create 1 77"),
+     "fix b of style temp/rescale changes velocities to hold a temperature"),
+    ("FIX damping/cundall", "FORCE", fixed("fix b GROUP damping/cundall 0.1 0.1", "fix move ours nve/sphere",
+                                           words=f"{WORDS} add_force yes", before=TODAY),
+     "fix b of style damping/cundall makes forces larger that oppose"),
     ("FIX addtorque", "TURNING", lambda ours: fixed("group one id %d\nfix b one addtorque 0 0 1" % (1 if ours else 4),
                                                     words=TURN)(ours),
      "fix b of style addtorque pushes the atoms of its group"),
@@ -269,6 +286,11 @@ FINE = {
     + ["fix b ours setforce 0 0 0", "fix move ours nve/sphere"],
     "a wall that sees the step of midpoint": scene() + [HALFWAY, "fix b ours wall/reflect zlo -8"],
     "a wall before a step that it sees": scene() + ["fix b ours wall/reflect zlo -8", OVERDAMPED],
+    "contacts damped before the fluid drags": scene(before=TODAY) + ["fix b ours damping/cundall 0.1 0.1"]
+    + INERTIA.splitlines(),
+    "spheres pushed along their dipoles": prepared("set group ours dipole 1 0 0", words=TURN,
+                                                   atoms="hybrid sphere dipole")(True)
+    + ["fix b ours propel/self dipole 1"],
     "nve where nobody turns": scene() + ["fix drag ours stokes_dynamics", "fix move ours nve"],
     "rigid without langevin": scene() + ["fix drag ours stokes_dynamics", "fix b ours rigid single"],
     "spins that the fluid does not damp": scene(before=TODAY) + ["fix b ours viscous/sphere 1", *INERTIA.splitlines()],

@@ -88,6 +88,19 @@ def test_where_substitution_diverges_gradients_go_on(simulation, tmp_path, words
     assert said.count("the run goes on with algorithm 2") == 1 and "step 0: algorithm 1: diverged: residual" in said
 
 
+@pytest.mark.parametrize("strict", [False, True])
+def test_where_substitution_is_too_slow_gradients_go_on(simulation, tmp_path, strict):
+    """Four spheres three radii apart, where 100 substitutions leave forces 1.7 times too large."""
+    spheres = Spheres([[-3, 0, 0], [0, 0, 0.5], [3, 0.5, 0], [0, 3, 1]], v=(1.0, 0.0, 0.0))
+    style = f"cut_off_distance inf rotation yes visc {ETA}"
+    reference = simulation(spheres, style + " algorithm 2 relative_tolerance 1e-9").run().drag
+    sim = simulation(spheres, style + " algorithm 1 strict" * strict, log=tmp_path / "log").run(2).run(2)
+    said = " ".join((tmp_path / "log").read_text().split())
+    assert said.count("algorithm 1: too slow: residual") == (not strict)
+    off = sim.drag[:, 0].sum() / reference[:, 0].sum()
+    assert off > 1.5 if strict else abs(off - 1) < 1e-3
+
+
 @pytest.mark.parametrize("n,converges", [(4, True), (5, False)])
 def test_substitution_across_a_chain_converges_up_to_four(simulation, n, converges):
     reference = simulation(touching_chain(n, ACROSS), f"cut_off_distance inf visc {ETA} {EXACT}").run().drag
