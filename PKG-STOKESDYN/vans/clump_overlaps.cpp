@@ -38,17 +38,10 @@ bool ClumpOverlaps::are_new(int bits)
   return now != before;
 }
 
-namespace {
-struct Member {
-  tagint molecule, tag;
-  double x[3], a;
-};
-}    // namespace
-
 /* Of the members [n] of a clump, by tag. Seen from each the others stand at their nearest image: what overlaps it
  * is near. */
-static void add_lost(const Voice &voice, const Domain *domain, const Member *clump, size_t n,
-                     std::map<tagint, double> &lost)
+void ClumpOverlaps::add_lost(const Voice &voice, const Domain *domain, const Member *clump, size_t n,
+                             std::map<tagint, double> &lost)
 {
   std::vector<double> x(3 * n), a(n);
   for (size_t k = 0; k < n; k++) {
@@ -64,18 +57,46 @@ static void add_lost(const Voice &voice, const Domain *domain, const Member *clu
   }
 }
 
-std::map<tagint, double> ClumpOverlaps::lost(int bits) const
+std::vector<ClumpOverlaps::Member> ClumpOverlaps::members(int bits, bool unwrapped) const
 {
   std::vector<Member> mine;
   for (int i = 0; i < atom->nlocal; i++) {
-    const double *x = atom->x[i];
-    if (atom->molecule[i] != 0 && (atom->mask[i] & bits) && atom->radius[i] > 0.0)
-      mine.push_back({atom->molecule[i], atom->tag[i], {x[0], x[1], x[2]}, atom->radius[i]});
+    if (atom->molecule[i] == 0 || !(atom->mask[i] & bits) || !(atom->radius[i] > 0.0)) continue;
+    double x[3] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
+    if (unwrapped) domain->unmap(atom->x[i], atom->image[i], x);
+    mine.push_back({atom->molecule[i], atom->tag[i], {x[0], x[1], x[2]}, atom->radius[i]});
   }
   auto all = from_all(world, mine);
   std::sort(all.begin(), all.end(), [](const Member &p, const Member &q) {
     return p.molecule != q.molecule ? p.molecule < q.molecule : p.tag < q.tag;
   });
+  return all;
+}
+
+/* Along x only those are compared that are within two of the largest radii. */
+tagint ClumpOverlaps::first(int bits) const
+{
+  constexpr double DEEP = 0.9;    // at 0.9 (a + b) two equal spheres share 0.7 % of their volume
+  std::vector<Member> all = members(bits, true);
+  double widest = 0.0;
+  for (const Member &m : all) widest = std::max(widest, 2.0 * m.a);
+  std::sort(all.begin(), all.end(), [](const Member &p, const Member &q) {
+    return p.molecule != q.molecule ? p.molecule < q.molecule : p.x[0] < q.x[0];
+  });
+  for (size_t i = 0; i < all.size(); i++)
+    for (size_t j = i + 1; j < all.size() && all[j].molecule == all[i].molecule; j++) {
+      if (all[j].x[0] - all[i].x[0] > widest) break;
+      const double reach = DEEP * (all[i].a + all[j].a);
+      double r2 = 0.0;
+      for (int d = 0; d < 3; d++) r2 += (all[j].x[d] - all[i].x[d]) * (all[j].x[d] - all[i].x[d]);
+      if (r2 < reach * reach) return all[i].molecule;
+    }
+  return 0;
+}
+
+std::map<tagint, double> ClumpOverlaps::lost(int bits) const
+{
+  const std::vector<Member> all = members(bits, false);
   std::map<tagint, double> lost;
   for (size_t begin = 0, end; begin < all.size(); begin = end) {
     for (end = begin; end < all.size() && all[end].molecule == all[begin].molecule; end++) {}

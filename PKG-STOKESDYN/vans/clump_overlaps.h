@@ -9,6 +9,11 @@
 
 #include <cstdint>
 #include <map>
+#include <vector>
+
+namespace LAMMPS_NS {
+class Domain;
+}
 
 namespace StokesDyn {
 
@@ -21,12 +26,23 @@ class ClumpOverlaps : protected LAMMPS_NS::Pointers {
   bool are_new(int bits);
   /* By tag of all members of all ranks, from 0 to 1 */
   std::map<LAMMPS_NS::tagint, double> lost(int bits) const;
+  /* The lowest molecule with members that share more than what touches in a contact, 0: none has. On all
+   * ranks together; a clump whose atoms lie on two sides of a periodic box without image flags is missed. */
+  LAMMPS_NS::tagint first(int bits) const;
 
  private:
   const Voice &voice;
   /* of the members of the last call; 0: there was none */
   uint64_t seen = 0;
   uint64_t fingerprint(int bits) const;
+  struct Member {
+    LAMMPS_NS::tagint molecule, tag;
+    double x[3], a;
+  };
+  /* Of all ranks, by molecules; the places are in the box, or unwrapped */
+  std::vector<Member> members(int bits, bool unwrapped) const;
+  static void add_lost(const Voice &voice, const LAMMPS_NS::Domain *domain, const Member *clump, size_t n,
+                       std::map<LAMMPS_NS::tagint, double> &lost);
 };
 
 }    // namespace StokesDyn

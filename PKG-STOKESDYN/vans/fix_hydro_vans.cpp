@@ -122,6 +122,7 @@ void FixHydroVans::init()
   check_others();
   look_at_neighbours();
   tell_fall();
+  tell_overlap();
 }
 
 /* A solve with a drag that is given. */

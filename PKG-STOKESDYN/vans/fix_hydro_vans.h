@@ -91,7 +91,7 @@ class FixHydroVans : public RowsFix {
   /* have they been read, in this run or in one whose restart file has them? */
   bool variables_known = false;
   bool told_outside = false, told_work = false, told_stiff = false, told_waves = false,
-       told_fall = false, told_roughness = false, told_smooth = false;
+       told_fall = false, told_roughness = false, told_smooth = false, told_overlap = false;
   Neighbourhood neighbourhood;
   /* of the last look at the grains' time step */
   LAMMPS_NS::bigint looked_step = -1;
@@ -111,6 +111,7 @@ class FixHydroVans : public RowsFix {
   void tell_steps();
   void tell_roughness();
   void tell_smooth();
+  void tell_overlap();
   void tell_stiff();
   void tell_sizes();
   void tell_waves();

@@ -19,7 +19,9 @@ using namespace StokesDyn;
 
 void FixHydroVans::look_at_neighbours()
 {
-  neighbourhood.look(set.voice, vans_neighbours(), set.fluctuation == VansSettings::LANGEVIN ? LANGEVIN : 0u,
+  const unsigned facts =
+      (set.fluctuation == VansSettings::LANGEVIN ? LANGEVIN : 0u) | (set.has_grains() ? DRAGS : 0u);
+  neighbourhood.look(set.voice, vans_neighbours(), facts,
                      [this](int i) { return (unsigned) ((atom->mask[i] & groupbit) != 0); }, this);
 }
 
@@ -117,6 +119,18 @@ void FixHydroVans::tell_smooth()
   told_smooth = true;
   set.voice.warn(std::string("keyword turbulence: there are no grains, and with ") + law->second +
                  " a smooth bottom rubs as if it had grains of 75 nu/u_star: use sublayer yes, or turbulence rousseau");
+}
+
+/* Once: by the default a clump whose members overlap has the buoyancy and the drag of all of them */
+void FixHydroVans::tell_overlap()
+{
+  if (told_overlap || set.overlap_given || !atom->molecule_flag || set.yade() || !set.has_grains()) return;
+  const tagint first = overlaps.first(groupbit | average_bit);
+  if (first == 0) return;
+  told_overlap = true;
+  set.voice.warn("keyword overlap: by its default, twice, what members of the clump of molecule " +
+                 std::to_string(first) + " share counts twice, in buoyancy, drag and phi: use overlap once, or write "
+                 "overlap twice if you want that");
 }
 
 /* What a coupling does, where it is not what the keywords seem to say, or takes seconds. */

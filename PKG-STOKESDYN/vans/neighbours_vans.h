@@ -11,6 +11,7 @@ namespace StokesDyn {
 /* Facts of a run; the page says them in the words that stand here. */
 enum VansFact : unsigned {
   LANGEVIN = 1 << 0,    // with fluctuation langevin
+  DRAGS = 1 << 1,       // the water drags grains
 };
 
 const std::vector<Neighbour> &vans_neighbours();

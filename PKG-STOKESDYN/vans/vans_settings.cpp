@@ -248,7 +248,11 @@ void VansSettings::read(Keywords &in)
       {"schmidt", [&] { schmidt = in.positive(); }},
       {"rules", [&] { fluid.rules = law.rules = in.option<sd_vans_rules>({"consistent", "yade"}); }},
       {"conserve", [&] { conserve = in.yes_no(); }},
-      {"overlap", [&] { overlap_once = in.choice({"twice", "once"}) == 1; }},
+      {"overlap",
+       [&] {
+         overlap_once = in.choice({"twice", "once"}) == 1;
+         overlap_given = true;
+       }},
       {"region", [&] { region = in.word(); }},
       {"average", [&] { average = in.word(); }},
   });

@@ -72,7 +72,7 @@ struct VansSettings {
   /* phi profiles in the mean that marks the bed (ni_capart) */
   int bed_average = 1;
   bool conserve = true;
-  bool overlap_once = false;
+  bool overlap_once = false, overlap_given = false;
   std::string region, average = "all";
 
   /* gx gy gz, each a number or a variable */

@@ -162,7 +162,11 @@ def test_every_row_has_a_case(tmp_path):
                 if row[:2] not in tested and row[2] != "FINE" and row[:2] not in ELSEWHERE]
     assert [row for row in names_of_rows("vans") if row[2] != "FINE"] == [
         # test_vans_coupling.py
-        ("FIX wall/reflect*", "LANGEVIN", "WARNING"), ("FIX freeze setforce planeforce lineforce", "0", "WARNING")]
+        ("FIX wall/reflect*", "LANGEVIN", "WARNING"), ("FIX freeze setforce planeforce lineforce", "0", "WARNING"),
+        ("FIX rigid* poems shake rattle", "DRAGS", "WARNING"),
+        ("FIX viscous langevin* gld gle gjf ffl ttm* nve/dotc/langevin electron/stopping* brownian*", "DRAGS",
+         "WARNING"), ("FIX nvt* npt* nvk temp/* momentum*", "DRAGS", "WARNING"),
+        ("FIX damping/cundall", "DRAGS", "WARNING")]
 
 
 def test_particles_at_rest_may_lose_their_own_kind(tmp_path):

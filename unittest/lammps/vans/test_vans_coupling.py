@@ -4,6 +4,7 @@ import re
 import numpy as np
 import pytest
 from host import allowed
+from system import STYLES_OF_TODAY, there
 # close_scenes is a fixture
 from vans_helper import Scene, bed_script, close_scenes, dump_rows, run_lmp, write_columns  # noqa: F401
 
@@ -293,14 +294,37 @@ def test_water_that_moves_on_alone_is_not_too_far_apart(tmp_path):
     assert "couplings are too far apart" not in done.stdout
 
 
-@pytest.mark.parametrize("before", [True, False])
-def test_what_holds_grains_stands_behind_the_stream(tmp_path, before):
-    """Otherwise the force of the stream moves them, and a warning says so."""
-    script, hold = bed_of_specks(1e-4, 10), "fix hold all setforce 0 0 0\n"
-    at = script.index("fix h") if before else script.index("run 1")
-    done = run_lmp(tmp_path, script[:at] + hold + script[at:])
+@pytest.mark.parametrize("style, says, before, behind", [
+    ("setforce 0 0 0", "stands before this fix in the input, whose forces then move what it holds", True, False),
+    ("rigid single", "stands before this fix in the input, so that it reads forces before", True, False),
+    ("viscous 1e-9", "adds a drag to grains that the water drags as well", True, True),
+    ("temp/berendsen 1 1 1", "changes velocities of grains, of which the water feels nothing", True, True),
+    ("damping/cundall 0.1 0.1", "stands behind this fix in the input and makes forces larger", False, True)])
+def test_what_the_stream_does_not_go_with_is_told(tmp_path, style, says, before, behind):
+    """In both orders of the input, and nothing where the fix has no grains."""
+    script = bed_of_specks(1e-4, 10).replace("run 1", "thermo_style custom step\nrun 0")
+    line = f"fix other all {style}\n"
+    if "cundall" in style:
+        line = f"plugin load {there(STYLES_OF_TODAY)}\n" + line
+    for at, told in ((script.index("fix h"), before), (script.index("run 0"), behind)):
+        done = run_lmp(tmp_path, script[:at] + line + script[at:])
+        assert done.returncode == 0, done.stdout[-1000:]
+        assert (f"fix other of style {style.split()[0]} {says}" in " ".join(done.stdout.split())) == told
+    none = run_lmp(tmp_path, script[:at] + "group none empty\n" + line.replace(" all ", " none ") + script[at:])
+    assert style.startswith("rigid") or (none.returncode == 0 and says not in none.stdout)
+
+
+@pytest.mark.parametrize("keyword, apart, ranks, told", [("", 0.7, 1, True), ("", 0.7, 2, True), ("", 0.97, 1, False),
+                                                         ("overlap twice", 0.7, 1, False),
+                                                         ("overlap once", 0.7, 1, False)])
+def test_members_that_share_volume_are_told(tmp_path, keyword, apart, ranks, told):
+    """Molecule 7 has two members that are so many diameters apart; those of molecule 3 are far from each other."""
+    script = bed_of_specks(1e-4, 10, keyword).replace("run 1", "thermo_style custom step\nrun 0\nrun 0")
+    script = script.replace("fix h", "fix mol all property/atom mol\nset atom 3*4 mol 3\nset atom 1*2 mol 7 y 3e-4 "
+                            f"z 3e-4\nset atom 1 x 2e-4\nset atom 2 x {2e-4 + apart * 1e-4:g}\nfix h", 1)
+    done = run_lmp(tmp_path, script, ranks)
     assert done.returncode == 0, done.stdout[-1000:]
-    assert ("fix hold of style setforce stands before this fix in the input" in done.stdout) == before
+    assert done.stdout.count("what members of the clump of molecule 7 share counts twice") == told
 
 
 @pytest.mark.parametrize("model, wall, told", [("langevin", "reflect", True), ("langevin", "lj126", False),
