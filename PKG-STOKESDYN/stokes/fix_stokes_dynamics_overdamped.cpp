@@ -224,6 +224,7 @@ void FixStokesDynamicsOverdamped::final_integrate()
 void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
 {
   check_selection(hydro);
+  drives.check_loads(hydro);
   check_images(voice, hydro.ambient.jumps());
   check_strain(voice, hydro.ambient.box_motion());
   forget_before_change(hydro);

@@ -8,6 +8,7 @@
 #include "atom.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 
@@ -58,6 +59,19 @@ void Drives::find(const Torques::Turned &turned)
 {
   squirmers.find();
   torques.find(directions, turned);
+}
+
+void Drives::check_loads(const Hydrodynamics &hydro) const
+{
+  for (int i : hydro.ambient.who()) {
+    double FT[6] = {0.0}, sum = 0.0;
+    copy<3>(atom_row(atom->f, i), FT);
+    if (atom->torque_flag) copy<3>(atom_row(atom->torque, i), FT + 3);
+    for (double part : FT) sum += part;
+    if (!std::isfinite(sum) && !is_held(i))
+      voice.at_step().fail_one("the force or torque on atom " + std::to_string(atom->tag[i]) +
+                               " is not a finite number: are two atoms at one point, or has the run blown up?");
+  }
 }
 
 /* Those that fix move moves have the velocity that it gave them, others that are held have none. */

@@ -40,6 +40,9 @@ class Drives : protected LAMMPS_NS::Pointers {
 
   /* Torques and strokes of this step. turned: as Torques has it */
   void find(const Torques::Turned &turned);
+  /* Ends the run where what LAMMPS has put into f and torque is no number; of those held it counts for
+   * nothing. */
+  void check_loads(const Hydrodynamics &hydro) const;
 
   /* Its centre does not go, or as fix move says; that, or pinned; as fix move says */
   bool is_held(int i) const { return atom->mask[i] & held.bit; }

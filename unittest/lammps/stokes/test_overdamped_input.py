@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from neighbour_tables import PACKAGE
+from system import Spheres
 from test_overdamped_clumps import doublet_and_sphere
 from without_inertia import ALL, COMM, FIX, THREE, chains, cloud, weight
 
@@ -68,6 +69,16 @@ def test_what_does_not_go_with_it_is_named(simulation, lines, message):
     sim.commands(FIX)
     with pytest.raises(Exception, match=message):
         sim.commands(lines).run(1)
+
+
+@pytest.mark.parametrize("words", ["cut_off_distance inf visc 1", "clumps_only yes visc 1",
+                                   "cut_off_distance inf visc 1 multiblob 12"])
+@pytest.mark.parametrize("more", ["", " temperature 1 77"])
+def test_a_force_that_is_no_number_is_told_with_its_atom(simulation, words, more):
+    sim = simulation(Spheres([[0, 0, 0], [3, 0, 0], [0, 3, 0]]), words, fix=False, box=[(-20.0, 20.0)] * 3, dt=0.01)
+    sim.commands(f"variable big atom 1e200^(1+(id==3))\nfix odd all addforce v_big 0 0\n{FIX}{more}")
+    with pytest.raises(Exception, match="step 0: the force or torque on atom 3 is not a finite number"):
+        sim.run(1)
 
 
 def test_it_cannot_be_minimised(simulation):
