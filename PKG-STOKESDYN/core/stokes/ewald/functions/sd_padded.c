@@ -7,6 +7,7 @@
 
 #include "sd_constants.h"
 #include "sd_lagrange.h"
+#include "sd_padded_lines.h"
 #include "sd_window.h"
 
 /* What is shared depends on the distance alone and has no wave beyond that of the grid: it is sampled at so
@@ -19,6 +20,8 @@ typedef struct {
   const sd_padded *k;
   int n[3], m[3], first[3], n_period[3], m_period[3];
   double *taper[3], *inverse[3];
+  /* of lines of n and of m numbers; NULL: across */
+  sd_padded_lines *n_lines[3], *m_lines[3];
   /* what is shared at equal steps of the distance, [SD_PADDED_NUMBERS] each; of sd_lagrange.h */
   double *radial, lagrange[NODES];
   /* [n][SD_PADDED_NUMBERS]; one kernel [n]; the same of the transform's grid [m] */
@@ -109,26 +112,31 @@ static void pa_fill(const workspace *s, int kernel)
 
 /* --- transforms --- */
 
-/* In place, forth or, across, back from its waves. Odd directions are 0 at both ends, and FFTW does
- * not see these. */
-static int transform(const workspace *s, int kernel, double *field, const int *n, int back)
+/* Of all lines of the direction across */
+static int transform_across(const int *n, int back, double *field)
 {
-  const int *odd = s->k->odd[kernel];
-  fftw_iodim dims[3], whole = {1, 0, 0};
-  fftw_r2r_kind kinds[3];
-  long stride = 1, first = 0;
-  for (int d = 2; d >= 0; d--) {
-    dims[d] = (fftw_iodim){odd[d] ? n[d] - 2 : n[d], (int) stride, (int) stride};
-    kinds[d] = odd[d] ? FFTW_RODFT00 : FFTW_REDFT00;
-    if (odd[d]) first += stride;
-    stride *= n[d];
-  }
-  if (s->k->across) kinds[0] = back ? FFTW_HC2R : FFTW_R2HC;
-  fftw_plan plan =
-      fftw_plan_guru_r2r(3, dims, 1, &whole, field + first, field + first, kinds, FFTW_ESTIMATE);
+  const int plane = n[1] * n[2];
+  const fftw_iodim line = {n[0], plane, plane}, lines = {plane, 1, 1};
+  const fftw_r2r_kind kind = back ? FFTW_HC2R : FFTW_R2HC;
+  fftw_plan plan = fftw_plan_guru_r2r(1, &line, 1, &lines, field, field, &kind, FFTW_ESTIMATE);
   if (!plan) return 0;
   fftw_execute(plan);
   fftw_destroy_plan(plan);
+  return 1;
+}
+
+/* In place, of all lines; back from waves of the large grid, of those that lead to offsets which are kept */
+static int transform(const workspace *s, int kernel, double *field, const int *n, sd_padded_lines *const lines[3],
+                     int back)
+{
+  int from[3] = {0, 0, 0}, end[3] = {n[0], n[1], n[2]};
+  for (int d = 0; d < 3; d++) {
+    if (lines[d]) sd_padded_lines_apply(lines[d], s->k->odd[kernel][d], d, n, from, end, field);
+    else if (!transform_across(n, back, field)) return 0;
+    if (!back) continue;
+    from[d] = s->first[d];
+    end[d] = s->first[d] + s->m[d] - 1;
+  }
   return 1;
 }
 
@@ -210,7 +218,11 @@ static int make_direction(workspace *s, int d, int size)
   s->inverse[d] = sd_window_inverse(e->points, e->beta, half + 1);
   for (int l = 0; l < s->n[d] && s->taper[d]; l++)
     s->taper[d][l] = l < s->first[d] ? taper(s->first[d] - l, beyond) : taper(l - end, room);
-  return s->taper[d] && s->inverse[d];
+  if (!whole) {
+    s->n_lines[d] = sd_padded_lines_create(s->n[d]);
+    s->m_lines[d] = sd_padded_lines_create(s->m[d]);
+  }
+  return s->taper[d] && s->inverse[d] && (whole || (s->n_lines[d] && s->m_lines[d]));
 }
 
 static int pa_make_room(workspace *s, const int *size)
@@ -233,6 +245,8 @@ static void pa_give_back(workspace *s)
   for (int d = 0; d < 3; d++) {
     free(s->taper[d]);
     free(s->inverse[d]);
+    sd_padded_lines_free(s->n_lines[d]);
+    sd_padded_lines_free(s->m_lines[d]);
   }
   free(s->radial);
   free(s->number);
@@ -251,11 +265,11 @@ sd_status sd_padded_table(const sd_padded *k, const int *size, const int *y, con
   if (ok) sample(&s);
   for (int c = 0; c < k->kernels && ok; c++) {
     pa_fill(&s, c);
-    ok = transform(&s, c, s.field, s.n, 0);
+    ok = transform(&s, c, s.field, s.n, s.n_lines, 0);
     if (ok) deconvolve(&s);
-    ok = ok && transform(&s, c, s.field, s.n, 1);
+    ok = ok && transform(&s, c, s.field, s.n, s.n_lines, 1);
     if (ok) keep(&s);
-    ok = ok && transform(&s, c, s.kept, s.m, 0);
+    ok = ok && transform(&s, c, s.kept, s.m, s.m_lines, 0);
     if (ok) pa_store(&s, c, y, z, table);
   }
   pa_give_back(&s);
