@@ -1,11 +1,12 @@
 """One owner for each clump and one halo for each rank: no ghosts of LAMMPS are needed, images move with their box."""
+import os
 import re
 
 import model
 import numpy as np
 import pytest
 from host import allowed
-from system import Spheres, chain, dump_lines, input_lines, largest_difference, lmp, read_dump
+from system import Spheres, chain, dump_lines, input_lines, largest_difference, lmp, read_dump, there
 
 A, ETA = 0.8, 1.3
 EXACT = f"visc {ETA} algorithm 2 relative_tolerance 1e-12"
@@ -125,6 +126,21 @@ def test_films_across_a_sheared_face_are_those_of_the_middle(tmp_path, ranks):
          for z in (15.0, 29.5)]
     assert np.abs(F[0]).max() > 0.5
     assert np.abs(F[1] - F[0]).max() < 1e-6
+
+
+# --- which copies are above -------------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("ranks", allowed(1, 2, 4))
+@pytest.mark.parametrize("boundary", ["p p p", "p f f"])
+def test_of_two_spheres_across_a_border_one_alone_has_the_other_above(tmp_path, boundary, ranks):
+    """Where this is wrong, films across borders are in no factor or in two, and a run only takes longer."""
+    plugin = there(os.path.join(os.environ["LAMMPS_PLUGIN_PATH"], "wrong", "haloabove.so"))
+    log = lmp(tmp_path, [f"boundary {boundary}", "region box prism -6 6 -6 6 -6 6 2 0 0", "create_box 1 box",
+                         "create_atoms 1 random 90 4 box", "mass 1 1", f"plugin load {plugin}",
+                         "fix halo all test/halo 3"], ranks=ranks).log
+    numbers = re.search(r"halo: (\d+) below, (\d+) above, (\d+) wrong", log).groups()
+    below, above, wrong = (int(number) for number in numbers)
+    assert below == above > 20 and wrong == 0
 
 
 # --- lists and copies that are kept -----------------------------------------------------------------------------------
