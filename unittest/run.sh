@@ -121,7 +121,7 @@ with_both() {    # LAMMPS is compiled while the other one is downloaded and gets
   begin_aside lammps 0 cmake/provide_lammps.sh > /dev/null
   cmake/setup.sh pypi test && end_aside lammps && with_open_mpi
 }
-with_open_mpi() {    # the core is that of build; of the tests only the plugins
+with_open_mpi() {    # the core is that of build; of C++ each file by itself; of the tests only the plugins
   STOKESDYN_BUILD=$top/build/openmpi STOKESDYN_CORE_FROM=$top/build cmake/setup.sh openmpi &&
     cmake -D STOKESDYN_TESTS=ON build/openmpi > build/openmpi/tests.log &&
     cmake --build build/openmpi --target test_plugins >> build/openmpi/tests.log

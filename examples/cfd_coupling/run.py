@@ -2,7 +2,7 @@
 """Runs both scenes of coupling.py on 1 and 2 ranks, compares them and draws the picture.
 
     run.py --out DIR    results go to DIR (default: build/examples/cfd_coupling)
-    run.py --quick      all but two-way on one rank for the first 240 steps only
+    run.py --quick      all but two-way on one rank for the first 80 steps only
     run.py --update     also refreshes the logs and the picture in this folder
 
 Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed.
@@ -51,7 +51,7 @@ def main():
     out = given.out
     need("mpirun")
 
-    results = {which: run(*which, out, 240 if given.quick and which != RUNS[2] else None) for which in RUNS}
+    results = {which: run(*which, out, 80 if given.quick and which != RUNS[2] else None) for which in RUNS}
     one = out / "callback.1"
     draw(one, one / "cfd_coupling.png")
     print(f"picture: {one / 'cfd_coupling.png'}\n")

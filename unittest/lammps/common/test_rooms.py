@@ -33,7 +33,7 @@ def compiler(target):
     with open(os.path.join(BUILD, "compile_commands.json")) as file:
         entries = [entry for entry in json.load(file) if f"/{target}.dir/" in entry["command"]]
     words = shlex.split(entries[0]["command"])
-    return words["ccache" in words[0]:words.index("-o")]
+    return words[os.path.basename(words[0]) == "ccache":words.index("-o")]
 
 
 @pytest.mark.parametrize("target", SEES)
