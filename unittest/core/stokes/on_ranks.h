@@ -161,7 +161,7 @@ static inline shared *on_ranks(int ranks, void (*work)(rank *r, const void *ctx)
   for (int p = 0; p < ranks; p++) {
     child[p] = fork();
     if (child[p] == 0) {
-      alarm(60); /* a rank that waits for one that has died */
+      alarm(900); /* a rank that waits for one that has died; not one that others leave no core */
       rank r = {.all = all, .me = p, .ranks = ranks};
       work(&r, ctx);
       _exit(0);

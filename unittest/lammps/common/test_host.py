@@ -28,7 +28,7 @@ def test_ranks_of_mpich_wait_for_those_of_another_test(mpich, tmp_path, monkeypa
     monkeypatch.setattr(host.tempfile, "gettempdir", lambda: str(tmp_path))
     script = f"echo begins >> {tmp_path}/said; sleep 0.2; echo ends >> {tmp_path}/said"
     for process in [subprocess.Popen(host.one_at_a_time() + ["sh", "-c", script]) for _ in range(3)]:
-        assert process.wait(timeout=60) == 0
+        assert process.wait(timeout=host.PATIENCE) == 0
     assert (tmp_path / "said").read_text().split() == ["begins", "ends"] * 3
 
 
