@@ -18,7 +18,21 @@ struct RowsToSend {
   double *row(int i) const { return rows + (size_t) i * width; }
 };
 
-template <class Base> class GhostRows : public Base {
+/* Rows of atoms to their ghosts, of several arrays in one message; and those of ghosts to the owners, who add
+ * them up, or keep the largest */
+class GhostExchange {
+ public:
+  virtual void forward(std::vector<RowsToSend> sent) = 0;
+  virtual void reverse(double *rows, int width, bool keep_largest = false) = 0;
+  void forward(double *rows, int width) { forward({{rows, width}}); }
+
+ protected:
+  /* nobody deletes one: LAMMPS owns them, as what else they are */
+  ~GhostExchange() = default;
+};
+
+/* Numbers of an atom: at most comm_forward and comm_reverse, which the constructor says */
+template <class Base> class GhostRows : public Base, public GhostExchange {
  public:
   using Base::Base;
   /* one array after the other, each with all its rows */
@@ -53,21 +67,17 @@ template <class Base> class GhostRows : public Base {
       }
   }
 
- protected:
-  /* Rows of atoms to their ghosts, of several arrays in one message; and those of ghosts to the owners, who
-   * add them up, or keep the largest. Numbers of an atom: at most comm_forward and comm_reverse, which the
-   * constructor says */
-  void forward(std::vector<RowsToSend> sent)
+  using GhostExchange::forward;
+  void forward(std::vector<RowsToSend> sent) override
   {
+    int width = 0;
+    for (const RowsToSend &of : sent) width += of.width;
+    assert(width <= this->comm_forward);
+    (void) width;
     arrays = std::move(sent);
     Compat::forward_comm(this->comm, this);
   }
-  void forward(double *rows, int width)
-  {
-    assert(width <= this->comm_forward);
-    forward({{rows, width}});
-  }
-  void reverse(double *rows, int width, bool keep_largest = false)
+  void reverse(double *rows, int width, bool keep_largest = false) override
   {
     assert(width <= this->comm_reverse);
     arrays = {{rows, width}};

@@ -39,7 +39,9 @@ PairSph *PairSph::prepared(const Voice &voice)
 PairSph::PairSph(LAMMPS *lmp) :
     GhostRows(lmp), SphCoefficients(Voice(lmp, "Pair style " + std::string(STYLE))),
     shift_fix(voice, "SPH_SHIFT_STATE", FixSphShift::STYLE), friction_fix(voice, "SPH_FRICTION", FRICTION_STYLE),
-    moved_box(lmp)
+    roles(*this), rows(*this, roles), middle(*this, roles, rows, *this), walls(*this, roles, rows, *this),
+    viscosities(*this, roles, rows, *this), forces(*this, roles, rows, middle, viscosities, *this),
+    checks(*this, roles, rows, *this), moved_box(lmp)
 {
   single_enable = 1;
   respa_enable = 0;
@@ -64,7 +66,7 @@ PairSph::~PairSph()
 void PairSph::settings(int narg, char **arg)
 {
   args = words(narg, arg);
-  members.clear();    // other settings want a run that is prepared
+  roles.forget();    // other settings want a run that is prepared
   parse();
 }
 
@@ -75,7 +77,7 @@ void PairSph::allocate()
   memory->create(setflag, n, n, "pair:setflag");
   memory->create(cutsq, n, n, "pair:cutsq");
   for (int i = 0; i < n; i++) std::fill_n(setflag[i], n, 0);
-  SphCoefficients::allocate_tables(atom->ntypes);
+  SphCoefficients::allocate_tables(atom->ntypes, setflag);
 }
 
 void PairSph::coeff(int narg, char **arg)
@@ -134,16 +136,9 @@ double PairSph::init_one(int i, int j)
   return support;
 }
 
-double PairSph::viscosity(int i) const
+void PairSph::reverse(double *of, int width, bool keep_largest)
 {
-  if (law != SD_SPH_NEWTON) return is_wall(i) ? 0.0 : viscosities[i];
-  const int t = atom->type[i];
-  return model.friction ? table[MU][t][t] : 0.0;
-}
-
-void PairSph::reverse(double *rows, int width, bool keep_largest)
-{
-  if (shared && force->newton_pair) GhostRows::reverse(rows, width, keep_largest);
+  if (rows.shared && force->newton_pair) GhostRows::reverse(of, width, keep_largest);
 }
 
 void *PairSph::extract(const char *name, int &dim)
@@ -158,35 +153,7 @@ void *PairSph::extract(const char *name, int &dim)
   return nullptr;
 }
 
-void PairSph::Neighbours::resize(int particles, size_t entries)
-{
-  if (pool.size() < entries) pool.resize(entries + entries / 8);
-  if ((int) own.size() >= particles) return;
-  for (auto *v : {&own, &count}) v->resize(particles);
-  neighbor.resize(particles);
-}
-
-double PairSph::Neighbours::bytes() const
-{
-  return sizeof(int) * (pool.capacity() + own.capacity() + count.capacity()) +
-      sizeof(int *) * neighbor.capacity();
-}
-
 double PairSph::memory_usage()
 {
-  double bytes = near.bytes() + around.bytes() + of_flow.bytes();
-  for (const auto *v : {&x4, &v4, &f4, &sums, &weights, &slope4, &du4, &B8, &own, &rubs, &scratch})
-    bytes += v->capacity() * sizeof(double);
-  for (const auto *v : {&P, &masses, &rate, &each, &kick, &wall_rows, &displacing, &viscosities, &inertia})
-    bytes += v->capacity() * sizeof(double);
-  for (const auto *v : {&classes, &phases})
-    bytes += v->capacity() * sizeof(int);
-  return bytes;
-}
-
-bool PairSph::used(int itype) const
-{
-  for (int j = 1; j <= atom->ntypes; j++)
-    if (setflag[std::min(itype, j)][std::max(itype, j)]) return true;
-  return false;
+  return rows.bytes() + middle.bytes() + walls.bytes() + viscosities.bytes() + forces.bytes();
 }

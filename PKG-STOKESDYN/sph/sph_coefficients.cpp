@@ -7,6 +7,7 @@
 #include "domain.h"
 #include "memory.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -104,8 +105,9 @@ void SphCoefficients::read_law(Keywords &in)
 
 // --- pair_coeff ---------------------------------------------------------------------------------
 
-void SphCoefficients::allocate_tables(int types)
+void SphCoefficients::allocate_tables(int types, int **setflag)
 {
+  set = setflag;
   const int n = types + 1;
   for (int k = 0; k < NPARAMETERS; k++) {
     voice.lmp->memory->create(given[k], n, n, "pair:given");
@@ -160,6 +162,19 @@ double SphCoefficients::spacing(int itype) const
                " deltap VALUE; the style itself computes it, as (mass/rho0)^(1/dimension), only where "
                "there is one fix sph/pressure with a rho0 and one mass per type");
   return pow(atom->mass[itype] / rho0, 1.0 / model.dimension);
+}
+
+bool SphCoefficients::used(int itype) const
+{
+  for (int j = 1; j <= voice.lmp->atom->ntypes; j++)
+    if (set[std::min(itype, j)][std::max(itype, j)]) return true;
+  return false;
+}
+
+sd_sph_parameters SphCoefficients::parameters(int i, int j) const
+{
+  return {table[H][i][j],    table[C][i][j],      table[ALPHA][i][j],
+          table[BETA][i][j], table[DELTAP][i][j], table[MU][i][j]};
 }
 
 sd_sph_rheology SphCoefficients::rheology(int t) const

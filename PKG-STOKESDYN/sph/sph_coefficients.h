@@ -29,6 +29,17 @@ class SphCoefficients {
   sd_sph_kernel kernel() const { return model.kernel; }
   int dimension() const { return model.dimension; }
   double dW_dr(int itype, double r) const;
+  /* Has a pair with this type coefficients? What is in use of a pair, and the law of viscosity of a type */
+  bool used(int itype) const;
+  sd_sph_parameters parameters(int itype, int jtype) const;
+  sd_sph_rheology rheology(int itype) const;
+  /* Has each particle a viscosity, of its type and perhaps of its shear rate, in place of pairs of types? */
+  bool has_own_viscosities() const { return implicit || law != SD_SPH_NEWTON; }
+
+  const Voice voice;
+  /* its scheme and delta are set by who knows the fixes that take part */
+  sd_sph_model model = {};
+  bool shifts = false, pliant = false, corrects = false, implicit = false;
 
  protected:
   enum Parameter { H, C, ALPHA, BETA, DELTAP, MU, TAU, N, MU_MAX, LAMBDA, NPARAMETERS };
@@ -40,24 +51,18 @@ class SphCoefficients {
   SphCoefficients(const SphCoefficients &) = delete;
   SphCoefficients &operator=(const SphCoefficients &) = delete;
 
-  const Voice voice;
-
   // --- pair_style
 
   std::vector<std::string> args;    // for restart files
-  bool shifts = false, pliant = false, corrects = false, implicit = false;
   sd_sph_law law = SD_SPH_NEWTON;
   double defaults[NPARAMETERS];
-  /* its scheme and delta are set by who knows the fixes that take part */
-  sd_sph_model model = {};
   void parse();
-  /* Has each particle a viscosity, of its type and perhaps of its shear rate, in place of pairs of types? */
-  bool has_own_viscosities() const { return implicit || law != SD_SPH_NEWTON; }
 
   // --- pair_coeff: NaN: not given; and what is in use
 
   double **given[NPARAMETERS] = {}, **table[NPARAMETERS] = {};
-  void allocate_tables(int types);
+  /* set: setflag of the pair style */
+  void allocate_tables(int types, int **set);
   /* unlike: of no type with itself */
   Values read_values(Keywords &in, bool unlike) const;
 
@@ -67,9 +72,9 @@ class SphCoefficients {
   double rho0 = 0.0;
   /* The numbers in use of a pair of types, with all that they must hold. Returns the support. */
   double mix(int i, int j);
-  sd_sph_rheology rheology(int itype) const;
 
  private:
+  int **set = nullptr;
   void read_law(Keywords &in);
   static bool may_vanish(int parameter);
   double mixed(int parameter, int i, int j) const;

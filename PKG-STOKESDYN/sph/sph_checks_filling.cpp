@@ -1,12 +1,10 @@
-/* Of pair_style sph/artVisc/tensCorr: what is easily taken wrong when a scene is made. */
-#include "pair_sph_artvisc_tenscorr.h"
+/* How the particles fill space when a run begins. */
+#include "sph_checks.h"
 
 #include "fix_sph_settings.h"
 #include "fix_wall_sph.h"
-#include "keywords.h"
 #include "ranks.h"
 #include "sd_sph_filling.h"
-#include "sd_sph_order.h"
 #include "sd_sph_probe.h"
 
 #include "atom.h"
@@ -21,20 +19,20 @@ using namespace StokesDyn;
 // dimension more.
 static constexpr double MOST = 1.25;
 
-void PairSph::look_at_scene()
+void SphChecks::look_at_scene()
 {
-  if (continuity && fills_space() && wall) look_at_thickness();
-  if (continuity) look_at_rest();
+  if (roles.continuity && fills_space() && roles.wall) look_at_thickness();
+  if (roles.continuity) look_at_rest();
 }
 
 /* A density far from rho0 is a pressure that tears the fluid in the first steps. */
-void PairSph::look_at_rest()
+void SphChecks::look_at_rest()
 {
-  for (const auto *fix : pressures) {
+  for (const auto *fix : roles.pressures) {
     if (!(fix->state.rho0 > 0.0)) continue;
     double n = 0.0, ratio = 0.0;
     for (int i = 0; i < atom->nlocal; i++) {
-      if (!(atom->mask[i] & fix->groupbit) || !used(atom->type[i]) || is_wall(i)) continue;
+      if (!(atom->mask[i] & fix->groupbit) || !settings.used(atom->type[i]) || roles.is_wall(i)) continue;
       n++;
       ratio += atom->rho[i] / fix->state.rho0;
     }
@@ -46,28 +44,21 @@ void PairSph::look_at_rest()
   }
 }
 
-/* Of this moment, as sums over neighbours need them. */
-void PairSph::pack_volumes()
-{
-  sd_sph_pack_x(particles.n, Sph::numbers(atom->x), nullptr, nullptr, 0.0, x4.data());
-  sd_sph_pack_volumes(&model, &particles, atom->rho, x4.data());
-}
-
 /* Masses that are not density times the room of a particle (of three dimensions in two, of another spacing), or two
  * lattices in one place: gaps and surfaces seem to be where there are none. False: so it is. */
-bool PairSph::fills_space()
+bool SphChecks::fills_space()
 {
-  const size_t rows = particles.n + 1;
-  Rows around_each(4 * rows, 0.0), M(6 * rows, 0.0);
-  pack_volumes();
-  sd_sph_surroundings(&model, &raw, &particles, around_each.data());
-  sd_sph_moments(&model, &raw, &particles, M.data());
-  reverse(around_each.data(), 4);
-  reverse(M.data(), 6);
+  const size_t all = rows.particles.n + 1;
+  Rows around_each(4 * all, 0.0), M(6 * all, 0.0);
+  rows.pack_volumes();
+  sd_sph_surroundings(&rows.model, &rows.raw, &rows.particles, around_each.data());
+  sd_sph_moments(&rows.model, &rows.raw, &rows.particles, M.data());
+  ghosts.reverse(around_each.data(), 4);
+  ghosts.reverse(M.data(), 6);
   double inside = 0.0, filled = 0.0;
   for (size_t i = 0; i < (size_t) atom->nlocal; i++) {
-    if (!used(atom->type[i]) || is_wall((int) i) || rests_alone((int) i)) continue;
-    const double here = sd_sph_filled(&model, &particles, (int) i, &around_each[4 * i], &M[6 * i]);
+    if (!settings.used(atom->type[i]) || roles.is_wall((int) i) || roles.rests_alone((int) i)) continue;
+    const double here = sd_sph_filled(&rows.model, &rows.particles, (int) i, &around_each[4 * i], &M[6 * i]);
     inside += here > 0.0;
     filled += here;
   }
@@ -75,29 +66,29 @@ bool PairSph::fills_space()
   filled = sum_of_all(world, filled) / std::max(inside, 1.0);
   if (inside == 0.0 || fabs(log(filled)) < log(MOST)) return true;
   voice.warn("inside the fluid the volumes of particles, mass over density, fill " + text(filled) +
-             " of the space in place of 1: give each the mass density * dx^" + std::to_string(model.dimension) +
+             " of the space in place of 1: give each the mass density * dx^" + std::to_string(rows.model.dimension) +
              ", dx the distance of neighbours" + (filled > MOST ? ", and make no particles where others are" : ""));
   return false;
 }
 
 /* Water leaks through a wall whose end it sees. At the tip of a wedge that cannot be helped, so a few may. */
-void PairSph::look_at_thickness()
+void SphChecks::look_at_thickness()
 {
   constexpr double FEW = 0.05;
-  pack_volumes();
-  Rows toward(4 * (size_t) (particles.n + 1), 0.0);
-  sd_sph_toward_walls(&model, &raw, &particles, toward.data());
-  reverse(toward.data(), 4);
-  forward(toward.data(), 4);
-  sd_sph_reach_of_walls(&model, &raw, &particles, toward.data());
-  reverse(toward.data(), 4, true);
+  rows.pack_volumes();
+  Rows toward(4 * (size_t) (rows.particles.n + 1), 0.0);
+  sd_sph_toward_walls(&rows.model, &rows.raw, &rows.particles, toward.data());
+  ghosts.reverse(toward.data(), 4);
+  ghosts.forward(toward.data(), 4);
+  sd_sph_reach_of_walls(&rows.model, &rows.raw, &rows.particles, toward.data());
+  ghosts.reverse(toward.data(), 4, true);
   double before = 0.0, past = 0.0;
   tagint first = MAXTAGINT;
   for (int i = 0; i < atom->nlocal; i++) {
     const double reach = toward[4 * (size_t) i + 3];
     if (!(reach > 0.0)) continue;
     before++;
-    if (!sd_sph_sees_past(&model, &particles, i, reach)) continue;
+    if (!sd_sph_sees_past(&rows.model, &rows.particles, i, reach)) continue;
     past++;
     first = std::min(first, atom->tag[i]);
   }
@@ -105,7 +96,7 @@ void PairSph::look_at_thickness()
   past = sum_of_all(world, past);
   first = smallest_of_all(world, first);
   if (past > FEW * before)
-    wall->voice.warn("the wall is thin: " + text(past) + " of the " + text(before) + " fluid particles that see it, "
-                     "the first is atom " + std::to_string(first) + ", see its other side and will leak through it; "
-                     "walls must be as thick as the support of the kernel, 2 h");
+    roles.wall->voice.warn("the wall is thin: " + text(past) + " of the " + text(before) + " fluid particles that see "
+                           "it, the first is atom " + std::to_string(first) + ", see its other side and will leak "
+                           "through it; walls must be as thick as the support of the kernel, 2 h");
 }
