@@ -77,11 +77,11 @@ double ComputeSphProbe::pressure(const Probe &probe) const
     for (int i = 0; i < atom->nlocal; i++) {
       if (!(atom->mask[i] & groupbit) || !(atom->mask[i] & fix->groupbit)) continue;
       const double h = pair->smoothing_length(atom->type[i]);
+      const sd_sph_spread of = {pair->kernel(), pair->dimension(), h, volume(i)};
       each_image(probe, i, [&](const double d[3]) {
         const double r = std::hypot(d[0], d[1], d[2]);
         if (r < 2.0 * h)
-          sd_sph_probe_add(pair->kernel(), pair->dimension(), h, r, volume(i),
-                           sd_sph_pressure(&fix->state, atom->rho[i]), mine);
+          sd_sph_probe_add(&of, r, sd_sph_pressure(&fix->state, atom->rho[i]), mine);
       });
     }
   MPI_Allreduce(mine, sums, 2, MPI_DOUBLE, MPI_SUM, world);
@@ -125,9 +125,10 @@ double ComputeSphProbe::height(const Probe &probe) const
     const sd_sph_stretch at = {first, step, (int) (last - first) + 1};
     part.assign(at.count, 0.0);
     fraction.resize(at.count);
-    for (const Near &p : near)
-      sd_sph_gauge_add(pair->kernel(), pair->dimension(), p.h, p.across, p.z, volume(p.i), &at,
-                       part.data());
+    for (const Near &p : near) {
+      const sd_sph_spread of = {pair->kernel(), pair->dimension(), p.h, volume(p.i)};
+      sd_sph_gauge_add(&of, p.across, p.z, &at, part.data());
+    }
     MPI_Allreduce(part.data(), fraction.data(), at.count, MPI_DOUBLE, MPI_SUM, world);
     const double found = sd_sph_gauge_height(&at, fraction.data());
     if (found > 0.0 || first == 0.0) return found;

@@ -41,7 +41,8 @@ void Drops::keep_momentum(const sd_sph_film &film, const double *mass, const dou
   find(film, to_ghosts);
   place.resize((size_t) film.all + 1);
   drops.resize((size_t) film.list->n + 1);
-  const int mine = sd_sph_sum_drops(&film, parent.data(), name.data(), mass, held, F, drops.data(), place.data());
+  const sd_sph_in_drops of = {name.data(), mass, held, F};
+  const int mine = sd_sph_sum_drops(&film, parent.data(), &of, drops.data(), place.data());
   std::vector<sd_sph_drop> all = from_all(world, std::vector<sd_sph_drop>(drops.begin(), drops.begin() + mine));
   count = sd_sph_join_drops((int) all.size(), all.data(), sum);
   sd_sph_find_excess(count, all.data(), mine, drops.data());

@@ -93,8 +93,8 @@ int sd_sph_name_drops(int all, int *parent, double *name)
   return changed;
 }
 
-int sd_sph_sum_drops(const sd_sph_film *f, int *parent, const double *name, const double *mass,
-                     const double *held, const double *F, sd_sph_drop *out, int *place)
+int sd_sph_sum_drops(const sd_sph_film *f, int *parent, const sd_sph_in_drops *of, sd_sph_drop *out,
+                     int *place)
 {
   int count = 0;
   for (int i = 0; i < f->all; i++) place[i] = -1;
@@ -103,12 +103,12 @@ int sd_sph_sum_drops(const sd_sph_film *f, int *parent, const double *name, cons
     int *at = &place[drops_root_of(parent, i)];
     if (*at < 0) {
       *at = count++;
-      out[*at] = (sd_sph_drop){.name = name[i]};
+      out[*at] = (sd_sph_drop){.name = of->name[i]};
     }
     sd_sph_drop *drop = &out[*at];
-    for (int d = 0; d < 3; d++) drop->F[d] += F[3 * (size_t) i + d];
-    drop->mass += mass[i];
-    if (held[i] > drop->held) drop->held = held[i];
+    for (int d = 0; d < 3; d++) drop->F[d] += of->F[3 * (size_t) i + d];
+    drop->mass += of->mass[i];
+    if (of->held[i] > drop->held) drop->held = of->held[i];
   }
   return count;
 }

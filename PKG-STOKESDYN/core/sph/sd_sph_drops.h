@@ -25,10 +25,15 @@ typedef struct {
   double name, F[3], mass, held;
 } sd_sph_drop;
 
+/* The same of particles: [n] name, mass and held, 0 or 1; [3 n] F */
+typedef struct {
+  const double *name, *mass, *held, *F;
+} sd_sph_in_drops;
+
 /* The trees among the particles below list->n that are fluid: out, at most list->n; returns their number.
- * place [all]: of the root of each tree. mass [list->n], held [list->n] 0 or 1, F [3 list->n]. */
-int sd_sph_sum_drops(const sd_sph_film *f, int *parent, const double *name, const double *mass,
-                     const double *held, const double *F, sd_sph_drop *out, int *place);
+ * place [all]: of the root of each tree. */
+int sd_sph_sum_drops(const sd_sph_film *f, int *parent, const sd_sph_in_drops *of, sd_sph_drop *out,
+                     int *place);
 
 /* Of the parts of drops of all ranks: sorts them and adds them up by name; returns the number of drops. sum
  * [3]: the force on those that are held, which keep it. */

@@ -5,10 +5,14 @@
 
 #include <math.h>
 
-void sd_sph_probe_add(sd_sph_kernel kernel, int dimension, double h, double r, double V, double P,
-                      double sums[2])
+static double spread_to(const sd_sph_spread *of, double r)
 {
-  const double VW = V * sd_sph_W(kernel, dimension, r, h);
+  return of->V * sd_sph_W(of->kernel, of->dimension, r, of->h);
+}
+
+void sd_sph_probe_add(const sd_sph_spread *of, double r, double P, double sums[2])
+{
+  const double VW = spread_to(of, r);
   sums[0] += VW;
   sums[1] += VW * P;
 }
@@ -19,16 +23,16 @@ double sd_sph_probe_pressure(const double sums[2])
 }
 
 /* The line crosses the support of a particle from z - reach to z + reach. */
-void sd_sph_gauge_add(sd_sph_kernel kernel, int dimension, double h, double across, double z,
-                      double V, const sd_sph_stretch *at, double *fraction)
+void sd_sph_gauge_add(const sd_sph_spread *of, double across, double z, const sd_sph_stretch *at,
+                      double *fraction)
 {
-  if (!(across < 2.0 * h)) return;
-  const double reach = sqrt(4.0 * h * h - across * across), step = at->step;
+  if (!(across < 2.0 * of->h)) return;
+  const double reach = sqrt(4.0 * of->h * of->h - across * across), step = at->step;
   const double first = fmax(0.0, ceil((z - reach) / step) - at->first);
   const double last = fmin(at->count - 1.0, floor((z + reach) / step) - at->first);
   if (!(first <= last)) return;    /* out of the stretch, perhaps by more than an int holds */
   for (int k = (int) first; k <= last; k++)
-    fraction[k] += V * sd_sph_W(kernel, dimension, hypot(across, z - (at->first + k) * step), h);
+    fraction[k] += spread_to(of, hypot(across, z - (at->first + k) * step));
 }
 
 double sd_sph_gauge_height(const sd_sph_stretch *at, const double *fraction)

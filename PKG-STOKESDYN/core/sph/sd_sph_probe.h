@@ -7,24 +7,30 @@
 
 SD_BEGIN_C
 
-/* Pressure at a point, Shepard's mean P = sum V P W / sum V W over the particles in reach: adds a
- * particle of volume V at the distance r to the two sums. */
-void sd_sph_probe_add(sd_sph_kernel kernel, int dimension, double h, double r, double V, double P,
-                      double sums[2]);
+/* A particle of volume V, as it is around itself: V W(r) */
+typedef struct {
+  sd_sph_kernel kernel;
+  int dimension;
+  double h, V;
+} sd_sph_spread;
+
+/* Pressure at a point, Shepard's mean P = sum V P W / sum V W over the particles in reach: adds one at the
+ * distance r to the two sums. */
+void sd_sph_probe_add(const sd_sph_spread *of, double r, double P, double sums[2]);
 
 /* Of the sums of all; 0 where nobody is in reach. */
 double sd_sph_probe_pressure(const double sums[2]);
 
 /* Free surface over a point: the fraction of space that is filled, sum V W, is 1 in the fluid and
- * 1/2 at a plane surface. Adds a particle of volume V at the height z over the point and the
- * distance across from the line upwards to the fraction of a stretch of this line. */
+ * 1/2 at a plane surface. Adds a particle at the height z over the point and the distance across from
+ * the line upwards to the fraction of a stretch of this line. */
 typedef struct {
   /* heights (first + k) step, k < count; first is a whole number */
   double first, step;
   int count;
 } sd_sph_stretch;
-void sd_sph_gauge_add(sd_sph_kernel kernel, int dimension, double h, double across, double z,
-                      double V, const sd_sph_stretch *at, double *fraction);
+void sd_sph_gauge_add(const sd_sph_spread *of, double across, double z, const sd_sph_stretch *at,
+                      double *fraction);
 
 /* The uppermost height of the stretch at which the fraction [at->count] falls through 1/2, linear
  * between samples; 0: there is none. */

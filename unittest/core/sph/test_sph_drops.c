@@ -34,7 +34,7 @@ static void a_free_drop_keeps_its_momentum_and_a_held_one_is_left_alone(void **s
   find_drops(s, parent);
   assert_true(sd_sph_name_drops(s->n, parent, name));
   assert_false(sd_sph_name_drops(s->n, parent, name));
-  const int count = sd_sph_sum_drops(&s->film, parent, name, mass, held, F, mine, place);
+  const int count = sd_sph_sum_drops(&s->film, parent, &(sd_sph_in_drops){name, mass, held, F}, mine, place);
   assert_int_equal(count, 2);
   memcpy(everywhere, mine, sizeof(sd_sph_drop) * 2);
   assert_int_equal(sd_sph_join_drops(2, everywhere, sum), 2);
@@ -106,7 +106,7 @@ static void parts_of_a_drop_on_two_ranks_are_one(void **state)
     F[3 * i] = 1.0;
   }
   find_drops(s, parent);
-  const int count = sd_sph_sum_drops(&s->film, parent, name, mass, held, F, mine, place);
+  const int count = sd_sph_sum_drops(&s->film, parent, &(sd_sph_in_drops){name, mass, held, F}, mine, place);
   everywhere[0] = (sd_sph_drop){5.0, {-1.0 * s->n, 0.0, 0.0}, 3.0, 0.0};
   everywhere[1] = mine[0];
   assert_int_equal(sd_sph_join_drops(2, everywhere, sum), 1);

@@ -59,6 +59,8 @@ static void at(int k, double p[2])
   p[1] = 0.05 + 0.1 * (k / 40);
 }
 
+static const sd_sph_spread SPREAD = {SD_SPH_WENDLAND, 2, 0.2, 0.01};
+
 static void a_probe_in_the_middle_has_the_linear_pressure(void **state)
 {
   (void) state;
@@ -67,7 +69,7 @@ static void a_probe_in_the_middle_has_the_linear_pressure(void **state)
   for (int k = 0; k < 320; k++) {
     double p[2];
     at(k, p);
-    sd_sph_probe_add(SD_SPH_WENDLAND, 2, 0.2, hypot(p[0], p[1] - 0.4), 0.01, 5.0 - 4.0 * p[1], sums);
+    sd_sph_probe_add(&SPREAD, hypot(p[0], p[1] - 0.4), 5.0 - 4.0 * p[1], sums);
   }
   CHECK_NEAR(sd_sph_probe_pressure(sums), 5.0 - 4.0 * 0.4, 1e-12);
 }
@@ -81,13 +83,12 @@ static void height_of_the_edge_of_a_lattice(void **state)
   for (int part = 0; part < 2; part++) {
     const sd_sph_stretch at_line = {part ? 20.0 : 0.0, 0.025, part ? 40 : 60};
     double fraction[60] = {0.0};
-    for (double z = -1e12; z < 1e13; z += 2e12)
-      sd_sph_gauge_add(SD_SPH_WENDLAND, 2, 0.2, 0.0, z, 1.0, &at_line, fraction);
+    for (double z = -1e12; z < 1e13; z += 2e12) sd_sph_gauge_add(&SPREAD, 0.0, z, &at_line, fraction);
     assert_true(sd_sph_gauge_height(&at_line, fraction) == 0.0);
     for (int k = 0; k < 320; k++) {
       double p[2];
       at(k, p);
-      sd_sph_gauge_add(SD_SPH_WENDLAND, 2, 0.2, fabs(p[0] - 0.013), p[1], 0.01, &at_line, fraction);
+      sd_sph_gauge_add(&SPREAD, fabs(p[0] - 0.013), p[1], &at_line, fraction);
     }
     found[part] = sd_sph_gauge_height(&at_line, fraction);
     CHECK_NEAR(found[part], 0.8, 0.005);
