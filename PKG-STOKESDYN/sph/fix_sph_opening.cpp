@@ -75,7 +75,7 @@ void FixSphOpening::check_width()
     if (atom->mask[i] & groupbit) mine = std::max(mine, pair->smoothing_length(atom->type[i]));
   const double h = largest_of_all(world, mine);
   const double needed = 2.0 * h + std::max(h, neighbor->skin);
-  if (width < needed)
+  if (width < needed * (1.0 - 1e-9))    // 0.6 is not less than 2 * 0.2 + 0.2
     voice.fail("the width " + text(width) +
                " of the layer is too small: particles of the flow would see its end; it must be " +
                text(needed) + " or more");

@@ -3,7 +3,9 @@
 #include "fix_sph_grains.h"
 #include "lost_pairs.h"
 #include "pair_sph_artvisc_tenscorr.h"
+#include "ranks.h"
 
+#include "atom.h"
 #include "fix.h"
 #include "force.h"
 #include "group.h"
@@ -21,6 +23,13 @@ static bool lets_sound_grow(const Guest &guest, std::string &says)
   const double limit = pair->growth_limit(guest.fix->groupbit);
   says = text(limit);
   return guest.lmp->update->dt > limit * (1.0 + 1e-9);
+}
+
+static bool moves_a_part(const Guest &guest, std::string & /*says*/)
+{
+  const auto *pair = static_cast<const PairSph *>(guest.lmp->force->pair_match(Sph::PAIR_STYLE, 1));
+  const int *mask = guest.lmp->atom->mask, bit = guest.fix->groupbit;
+  return first_atom(guest.lmp, [=](int i) { return pair->is_particle(i) && !(mask[i] & bit); }) != 0;
 }
 
 static bool is_dynamic(const Guest &guest, std::string &says)
@@ -63,8 +72,7 @@ const std::vector<Neighbour> &sph_neighbours()
        "has {}: name a group with all particles of water and walls, or take it out", loses_ghosts, N::ANYWHERE},
       {N::COMMAND, "special_bonds", 0, N::ERROR,
        "has a factor 0 and keeps {} from those that it is bonded to, which it must see: use special_bonds lj/coul "
-       "1 1 1",
-       loses_by_bonds, N::ANYWHERE},
+       "1 1 1", loses_by_bonds, N::ANYWHERE},
       {N::COMMAND, "pair_coeff", 0, N::WARNING,
        "leaves out {}: where they meet, one flows through the other. Use pair_coeff I J sph/artVisc/tensCorr for "
        "both types", loses_by_types, N::ANYWHERE},
@@ -76,6 +84,9 @@ const std::vector<Neighbour> &sph_neighbours()
        "has the dynamic group {}, which is empty when the first forces are computed, and in some LAMMPS "
        "is always that of the step before: use a group of fixed members, made anew between runs",
        is_dynamic, N::ANYWHERE},
+      {N::FIX, "recenter", 0, N::WARNING,
+       "moves some of the particles without a velocity, so that the density knows nothing of it: name a group with "
+       "all particles of water and walls, or take it out", moves_a_part},
       // walls
       {N::FIX, "wall/reflect* wall/lj* wall/harmonic* wall/morse wall/table wall/lepton wall/colloid "
                "wall/region wall/gran*", 0, N::WARNING,

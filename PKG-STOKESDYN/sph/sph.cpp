@@ -34,15 +34,21 @@ namespace Sph {
     return found;
   }
 
-  std::vector<Fix *> integrators(LAMMPS *lmp)
+  std::vector<Fix *> movers(LAMMPS *lmp)
   {
     std::vector<Fix *> found;
     for (int i = 0; i < lmp->modify->nfix; i++) {
       Fix *fix = lmp->modify->fix[i];
-      if (fix->time_integrate && strcmp(fix->style, "move") != 0 && !strstr(fix->style, "rigid") &&
-          !strstr(fix->style, "stationary"))
-        found.push_back(fix);
+      if (fix->time_integrate && !strstr(fix->style, "stationary")) found.push_back(fix);
     }
+    return found;
+  }
+
+  std::vector<Fix *> integrators(LAMMPS *lmp)
+  {
+    std::vector<Fix *> found;
+    for (Fix *fix : movers(lmp))
+      if (strcmp(fix->style, "move") != 0 && !strstr(fix->style, "rigid")) found.push_back(fix);
     return found;
   }
 

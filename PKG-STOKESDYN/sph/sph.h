@@ -44,8 +44,9 @@ namespace Sph {
   /* The pair style of the scene, a PairSph; fails without one. */
   LAMMPS_NS::Pair *require_pair(const Voice &voice);
 
-  /* Those that move particles by forces: all that integrate in time but fix move and rigid
-   * bodies. */
+  /* Those that move particles: all that integrate in time, but for particles at rest */
+  std::vector<LAMMPS_NS::Fix *> movers(LAMMPS_NS::LAMMPS *lmp);
+  /* Of these, those that move each by the force on it: all but fix move and rigid bodies */
   std::vector<LAMMPS_NS::Fix *> integrators(LAMMPS_NS::LAMMPS *lmp);
 
   /* Union of their group bits. */

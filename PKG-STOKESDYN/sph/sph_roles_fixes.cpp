@@ -99,11 +99,7 @@ void SphRoles::find_integrators()
   leapfrog_bits = Sph::groups(moving) | Sph::groups(stationary);
   own_vest_bits = Sph::groups(moving) | Sph::groups(theirs);
   rest_bits = Sph::groups(stationary) | Sph::groups(their_stationary);
-  displaced_bits = 0;
-  for (int k = 0; k < lmp->modify->nfix; k++) {
-    const Fix *fix = lmp->modify->fix[k];
-    if (fix->time_integrate && !strstr(fix->style, "stationary")) displaced_bits |= fix->groupbit;
-  }
+  displaced_bits = Sph::groups(Sph::movers(lmp));
 }
 
 bool SphRoles::rests_alone(int i) const
@@ -150,7 +146,7 @@ void SphRoles::check_groups()
     pressure_bits |= fix->groupbit;
   }
   int moved = 0;
-  for (const auto *fix : Sph::integrators(lmp)) {
+  for (const auto *fix : Sph::movers(lmp)) {
     if (const tagint both = in_both(moved, fix->groupbit))
       voice.fail("atom " + std::to_string(both) + " is integrated twice, by " + name_of(fix) + " and by another "
                  "fix: it would go twice as far in a step; take one of the two out");

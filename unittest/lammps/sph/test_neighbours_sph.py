@@ -85,6 +85,8 @@ BESIDE = [
      "pair_style sph/taitwater sets the density"),
     (*LAMMPS_SPH, paired("sph/idealgas", "IJ sph/idealgas 0.01 0.2"), "pair_style sph/idealgas sets the density"),
     ("FIX sph", "CONTINUITY", moved_by_lammps, "fix move of style sph lets sound grow at time steps above 0.00075"),
+    ("FIX recenter", "0", fixed("fix b GROUP recenter INIT NULL NULL"),
+     "fix b of style recenter moves some of the particles without a velocity"),
     (*WALL, fixed("fix b GROUP wall/reflect xhi EDGE"), "fix b of style wall/reflect is no wall for water"),
     (*WALL, fixed("fix b GROUP wall/lj93 xhi EDGE 1 0.02 0.05"), "fix b of style wall/lj93 is no wall for water"),
     (*WALL, fixed("fix b GROUP wall/harmonic xhi EDGE 1 0.02 0.05"),

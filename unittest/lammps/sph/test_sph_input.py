@@ -149,6 +149,8 @@ AT_RUN = {
                                     "that the fluid asks for is not above 0, the lowest of fix eos"),
     "integrated twice": (PAIR + MOVE + "fix more all nve/sph",
                          "atom 1 is integrated twice, by fix more of style nve/sph and by another fix"),
+    "moved as well": (PAIR + MOVE + "fix more all move linear 0 0 0",
+                      "atom 1 is integrated twice, by fix more of style move and by another fix"),
     "integrated by two styles": (PAIR + MOVE + "fix more all nve", "integrated twice, by fix more of style nve"),
     "rerun": (PAIR + MOVE + "dump d all atom 1 {dump}\nrun 1\nrerun {dump} dump x y z", "cannot be used with rerun"),
     "stop": (PAIR.replace("* *", "* * c 20") + MOVE + "timestep 0.1\nfix c all check/timestep/sph 1 0.3 stop",

@@ -310,6 +310,13 @@ def test_bad_input(change, words):
     assert words in message(scene.replace(*change) + "run 1")
 
 
+def test_the_width_that_a_layer_must_have_is_enough():
+    """2 * 0.2 + 0.2 is not 0.6 to the last digit."""
+    lmp = start()
+    run(lmp, PIPE + OPEN.format(1).replace("0.7", "0.6") + "run 0 post no")
+    lmp.close()
+
+
 @pytest.mark.parametrize("other, first", [("sph/inlet xlo 0 0.7 velocity 1", "in"), ("sph/outlet xlo 0 0.7", "in"),
                                           ("sph/inlet xhi 1 0.7 velocity 1", "out")])
 def test_two_openings_on_one_layer_are_an_error_that_names_both(other, first):
