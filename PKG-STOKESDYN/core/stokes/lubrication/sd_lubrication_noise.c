@@ -26,19 +26,21 @@ static sd_status noise_draw_pair(const sd_lubrication *L, long k, sd_lubrication
   return status;
 }
 
-/* The symmetric root, in units that make rotations comparable to translations */
+/* The symmetric root, in units that make rotations comparable to translations. An eigenvalue that is smaller beside the
+ * largest one is rounding, whose root would be a force. */
 static void draw_alone(const double B[36], const double g[6], double F[6])
 {
+  const double rounding = 1e-13;
   const double tt = B[0] + B[7] + B[14], rr = B[21] + B[28] + B[35];
   const double length = tt > 0.0 && rr > 0.0 ? sqrt(rr / tt) : 1.0;
   double A[36], w[6], V[36];
   for (int e = 0; e < 36; e++)
     A[e] = B[e] / (e / 6 < 3 ? 1.0 : length) / (e % 6 < 3 ? 1.0 : length);
   sd_eigen(6, A, w, V);
-  for (int k = 0; k < 6; k++) {
+  for (int k = 0; k < 6 && w[k] > rounding * w[0]; k++) {
     double c = 0.0;
     for (int q = 0; q < 6; q++) c += V[6 * q + k] * g[q];
-    c *= sqrt(fmax(w[k], 0.0));
+    c *= sqrt(w[k]);
     for (int p = 0; p < 6; p++) F[p] += c * V[6 * p + k] * (p < 3 ? 1.0 : length);
   }
 }

@@ -148,6 +148,37 @@ static void rounding_of_a_film_that_is_clipped_is_no_force(void **state)
   for (int k = 0; k < 12; k++) assert_true(fabs(F[1][k] - F[0][k]) < 1e-14);
 }
 
+static int any_numbers(void *ctx, int i, int at, double g[12])
+{
+  uint64_t *seed = ctx;
+  for (int k = 0; k < 12; k++) g[k] = uniform(seed, -1.7, 1.7);
+  return i <= at;
+}
+
+/* A wall that resists one motion alone pushes along that, and by rounding in no other way. */
+static void rounding_of_what_a_wall_does_not_resist_is_no_force(void **state)
+{
+  (void) state;
+  uint64_t seed = 5;
+  near_scene q = near_create(scene_create(1), 2.0, 1e-3);
+  scene_set(&q.s, 0, 0, 0, 0, 1.0, 1.3);
+  for (int k = 0; k < 20; k++) {
+    double e[6], B[36], E[6] = {0.0}, F[6] = {0.0}, along = 0.0, square = 0.0;
+    for (int p = 0; p < 6; p++) e[p] = uniform(&seed, -1, 1);
+    for (int p = 0; p < 36; p++) B[p] = e[p / 6] * e[p % 6];
+    near_place(&q);
+    sd_lubrication_add_own(&q.L, 0, B, E);
+    assert_int_equal(sd_lubrication_noise(&q.L, any_numbers, &seed, F), SD_OK);
+    for (int p = 0; p < 6; p++) {
+      along += e[p] * F[p];
+      square += e[p] * e[p];
+    }
+    assert_true(fabs(along) > 1e-3);
+    for (int p = 0; p < 6; p++) CHECK_NEAR(F[p], along / square * e[p], 1e-13);
+  }
+  near_free(&q);
+}
+
 static void what_is_negative_has_no_root(void **state)
 {
   (void) state;
@@ -165,6 +196,7 @@ int main(void)
       cmocka_unit_test(units_of_length_do_not_matter),
       cmocka_unit_test(rounding_of_a_part_that_is_not_there_is_no_failure),
       cmocka_unit_test(rounding_of_a_film_that_is_clipped_is_no_force),
+      cmocka_unit_test(rounding_of_what_a_wall_does_not_resist_is_no_force),
       cmocka_unit_test(what_is_negative_has_no_root),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
