@@ -126,6 +126,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   void find_drives(const Hydrodynamics &);
   bool in_clump(const Hydrodynamics &, int i) const;
   double weight(bool has) const;
+  sd_step step_of(bool has) const;
   double change_of_loads() const { return scheme == MIDPOINT ? weight(true) : 0.0; }
   void advance();
   void at_image(const Hydrodynamics &, const double *row, const double *place, double *old) const;

@@ -32,17 +32,22 @@ void FixStokesDynamicsOverdamped::at_image(const Hydrodynamics &hydro, const dou
 void FixStokesDynamicsOverdamped::move_free(const Hydrodynamics &hydro, int i)
 {
   if (drives.is_held(i)) return;
-  const double dt = update->dt, *V = lone_velocity[i];
-  const double scale = noise.on() ? noise.scale(dt) : 0.0;
-  double old[6] = {V[0], V[1], V[2]}, mean[3], move[6];
+  const double *V = lone_velocity[i], *y = noise.on() ? random[i] : nullptr;
+  const sd_step step = step_of(before.has(i));
+  double old[6] = {V[0], V[1], V[2]}, move[6];
   if (before.has(i)) at_image(hydro, before[i], atom->x[i], old);
-  sd_mean_velocity(3, V, old, weight(before.has(i)), mean);
-  for (int d = 0; d < 3; d++) move[d] = dt * mean[d] + (noise.on() ? scale * random[i][d] : 0.0);
-  directions.turn_of_step(i, dt, weight(before.has(i)), scale, random[i] + 3, move + 3);
+  sd_step_move(&step, 3, V, old, y, move);
+  directions.turn_of_step(i, step, y ? y + 3 : nullptr, move + 3);
   steps.go(i, move);
   double *row = before.writable(i);
   copy<3>(V, row);
   copy<3>(atom->x[i], row + 6);
+}
+
+/* has: does it have a row of the step before? */
+sd_step FixStokesDynamicsOverdamped::step_of(bool has) const
+{
+  return {update->dt, weight(has), noise.on() ? noise.scale(update->dt) : 0.0};
 }
 
 /* The point by which a clump is moved, from its centroid in the axes of its shape: with noise the centre
@@ -57,11 +62,10 @@ const double *FixStokesDynamicsOverdamped::tracked(const ClumpShape &shape) cons
 void FixStokesDynamicsOverdamped::tracked_velocity(const ClumpPoses::Clump &clump,
                                                    const ClumpShape &shape, double V[6]) const
 {
-  double arm[3], turning[3];
+  double arm[3];
   sd_multiply3(clump.pose, tracked(shape), arm);
-  sd_cross(clump.V + 3, arm, turning);
   copy<6>(clump.V, V);
-  for (int d = 0; d < 3; d++) V[d] += turning[d];
+  sd_clump_shift_velocity(arm, V);
 }
 
 void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
@@ -70,17 +74,13 @@ void FixStokesDynamicsOverdamped::move_clumps(Hydrodynamics &hydro)
   steps.go(hydro, [&](size_t number) {
     const ClumpPoses::Clump &clump = poses.clumps()[number];
     const int first = poses.own_clump(clump).atom;
-    const bool has = before.has(first);
-    double V[6], old[6], mean[6], *row = before.writable(first);
+    const sd_step step = step_of(before.has(first));
+    double V[6], old[6], *row = before.writable(first);
     BodySteps::ClumpStep s = {tracked(poses.shape(clump)), {}, row + 6};
     tracked_velocity(clump, poses.shape(clump), V);
     at_image(hydro, row, clump.pose + 9, old);
     copy<6>(V, row);
-    sd_mean_velocity(6, V, old, weight(has), mean);
-    for (int d = 0; d < 6; d++) {
-      s.move[d] = update->dt * mean[d];
-      if (noise.on()) s.move[d] += noise.scale(update->dt) * noise.of_clump(number)[d];
-    }
+    sd_step_move(&step, 6, V, old, noise.on() ? noise.of_clump(number) : nullptr, s.move);
     steps.keep_in_plane(s.move);
     return s;
   });

@@ -132,13 +132,12 @@ void ClumpPoses::find_held()
       if (known != first[0]) least = std::min(least, own_clump(clump).molecule);
     }
     if (clump.known != SD_BODY_HELD) continue;
-    double arm[3], turning[3];
+    double arm[3];
     std::copy_n(first + 1, 6, clump.V);
     if (ambient.jumps())
       sd_add_edges(ambient.jumps(), &scene.whole.edges[3 * member_of(clump, 0)], clump.V);
     sd_minus(clump.pose + 9, &spheres.x[3 * (size_t) own_clump(clump).begin], arm);
-    sd_cross(clump.V + 3, arm, turning);
-    for (int d = 0; d < 3; d++) clump.V[d] += turning[d];
+    sd_clump_shift_velocity(arm, clump.V);
   }
   for (int pin = 0; pin < 2; pin++) {
     const int64_t molecule = smallest_of_all(world, split[pin]);

@@ -66,13 +66,12 @@ void Directions::note_found(int i, const double W[3])
   if (any_moved) quaternion(i, row + 6);
 }
 
-void Directions::turn_of_step(int i, double dt, double weight, double scale, const double *noise, double w[3])
+void Directions::turn_of_step(int i, const sd_step &step, const double *y, double w[3])
 {
   std::fill_n(w, 3, 0.0);
   if (!on() || !turning.has(i)) return;
   double *row = turning.row(i);
-  sd_mean_velocity(3, row, row + 3, weight, w);
-  for (int d = 0; d < 3; d++) w[d] = dt * w[d] + (scale > 0.0 ? scale * noise[d] : 0.0);
+  sd_step_move(&step, 3, row, row + 3, y, w);
   std::copy_n(row, 3, row + 3);
 }
 

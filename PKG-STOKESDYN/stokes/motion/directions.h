@@ -8,6 +8,8 @@
 
 #include "rows_fix.h"
 
+#include "sd_pose.h"
+
 #include "atom.h"
 #include "pointers.h"
 
@@ -39,9 +41,9 @@ class Directions : protected LAMMPS_NS::Pointers {
 
   /* What a solve has found */
   void note_found(int i, const double W[3]);
-  /* The turn w [3] of a whole step dt: by W of now and before, whose change counts by weight
-   * (sd_mean_velocity), and noise [3] times scale. W of now is that of before then. Without a direction 0 */
-  void turn_of_step(int i, double dt, double weight, double scale, const double *noise, double w[3]);
+  /* The turn w [3] of a whole step: by W of now and before, and y [3] of the noise (nullptr: none). W of now
+   * is that of before then. Without a direction 0 */
+  void turn_of_step(int i, const sd_step &step, const double *y, double w[3]);
   /* By the vector dt W; by a rotation R */
   void turn(int i, const double W[3], double dt);
   void turn(int i, const double R[9]);

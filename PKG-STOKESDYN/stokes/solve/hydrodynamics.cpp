@@ -314,7 +314,7 @@ void Hydrodynamics::look_at_step(const sd_solve_report &report, bool preconditio
 {
   const sd_system system = solver.system();
   guard.state = memory->global.guard;
-  const auto resist = [this](const std::vector<double> &v, std::vector<double> &Rv) {
+  const auto resist = [this](const double *v, double *Rv) {
     return solver.resist(v, settings.max_iter, Rv);
   };
   if (shells.settings.on())

@@ -78,9 +78,7 @@ void Hydrodynamics::add_moments_left(double part)
   const int *first = shells.first_of_rows();
   std::vector<double> S(6 * n + 6, 0.0), f(3 * n + 3, 0.0);
   sd_multiblob_moments((int) n, first, now.r.data(), l.data(), S.data());
-  for (size_t k = 0; k < n; k++)
-    for (size_t p = first[k]; p < (size_t) first[k + 1]; p++)
-      for (size_t d = 0; d < 3; d++) f[3 * k + d] += l[3 * p + d];
+  sd_multiblob_forces((int) n, first, l.data(), f.data());
   add_on_members(f, S.data());
   moments_left.resize(6 * n + 6, 0.0);
   for (size_t j = 0; j < S.size(); j++) moments_left[j] += part * S[j];

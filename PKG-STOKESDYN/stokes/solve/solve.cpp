@@ -34,14 +34,14 @@ sd_status Solve::run(const How &how, sd_solve_report &report)
   return solve_bodies(how, guess.recall(how.asked, std::move(l)), report);
 }
 
-sd_status Solve::resist(const std::vector<double> &motions, int max_iter, std::vector<double> &forces)
+sd_status Solve::resist(const double *motions, int max_iter, double *forces)
 {
-  const size_t n = scene.size();
+  const std::vector<double> moving(motions, motions + bodies.width * scene.size());
   std::vector<double> exerted_before = exerted, l_before = l, v_before = v_with_l;
   sd_solve_report unused = {};
-  bodies.rest_in(motions, false);
+  bodies.rest_in(moving, false);
   const sd_status status = solve_bodies({Guess::FORCES, 1e-2, max_iter}, guess.none(), unused);
-  for (size_t j = 0; j < bodies.width * n; j++) forces[j] = -exerted[j];
+  for (size_t j = 0; j < moving.size(); j++) forces[j] = -exerted[j];
   exerted.swap(exerted_before);
   l.swap(l_before);
   v_with_l.swap(v_before);

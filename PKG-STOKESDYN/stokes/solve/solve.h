@@ -50,7 +50,7 @@ class Solve : protected LAMMPS_NS::Pointers {
   void keep(Guess::Question asked) { guess.keep(asked, {l, v_with_l, exerted}); }
   /* [width spheres] forces on spheres that move so in a fluid at rest, within 1 %. What the last solve has
    * found stays. */
-  sd_status resist(const std::vector<double> &motions, int max_iter, std::vector<double> &forces);
+  sd_status resist(const double *motions, int max_iter, double *forces);
 
   /* What was found: [width spheres] forces on the fluid, films included; velocities of the spheres (of
    * the images that the rows stand for), and [6 bodies] */

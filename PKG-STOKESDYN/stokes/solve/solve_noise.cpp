@@ -153,8 +153,8 @@ void Solve::difference(double sign)
 
 void Solve::push()
 {
-  for (long j = 0; j < sd_bodies_unknowns(&bodies.bodies); j++) bodies.u[j] += slip[j] + slip_left[j];
-  for (long j = 0; j < sd_bodies_loads(&bodies.bodies); j++) bodies.F[j] += pushed[j] + load_left[j];
+  const sd_drifter_drawn all = {slip.data(), pushed.data(), slip_left.data(), load_left.data()};
+  sd_drifter_add(&bodies.bodies, &all, bodies.u.data(), bodies.F.data());
 }
 
 void Solve::push_alone()

@@ -12,6 +12,7 @@
 #include "utils.h"
 
 #include "sd_hash.h"
+#include "sd_rate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -169,30 +170,26 @@ void TimeStepGuard::conclude(const sd_system &system, Scene &scene, double lambd
   compare(tau.of_velocity);
 }
 
-/* The largest eigenvalue of W^-1 R is 1/mu: by power iteration from random numbers, whose Rayleigh
- * quotient is a few per cent low at most. */
+/* R v by a solve, which may end a little early */
+static sd_status resisted(void *ctx, const double *v, double *Rv)
+{
+  const sd_status status = (*static_cast<const TimeStepGuard::Resist *>(ctx))(v, Rv);
+  return status == SD_EMAXITER ? SD_OK : status;
+}
+
+/* 1/mu is the fastest rate, from random numbers. */
 double TimeStepGuard::compute_of_shells(const sd_system &A, const Resist &resist, Scene &scene)
 {
   const size_t m = 6 * (size_t) A.n;
   std::vector<double> weight, v(m + 6), Rv(m + 6);
   weigh(A, scene, &weight);
   for (size_t j = 0; j < m; j++) v[j] = random_number(scene, j / 6, j % 6);
-  double rate = 0.0;
-  for (int k = 0; k < SOLVES; k++) {
-    double sums[2] = {0.0, 0.0};
-    const sd_status status = resist(v, Rv);
-    if (status == SD_ENOMEMORY || status == SD_ECALLBACK)
-      fail_by(voice.of("limit of the time step"), status);
-    if (status != SD_OK && status != SD_EMAXITER) return INFINITY;
-    for (size_t j = 0; j < m; j++) {
-      sums[0] += v[j] * Rv[j];
-      sums[1] += v[j] * weight[j] * v[j];
-    }
-    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, world);
-    rate = std::max(rate, sums[0] / sums[1]);
-    for (size_t j = 0; j < m; j++) v[j] = Rv[j] / (weight[j] * rate);
-  }
-  return rate > 0.0 ? 1.0 / rate : INFINITY;
+  const sd_decay decay = {(long) m, weight.data(), resisted, const_cast<Resist *>(&resist), &A.world};
+  double rate;
+  const sd_status status = sd_rate(&decay, SOLVES, v.data(), Rv.data(), &rate);
+  if (status == SD_ENOMEMORY || status == SD_ECALLBACK)
+    fail_by(voice.of("limit of the time step"), status);
+  return status == SD_OK && rate > 0.0 ? 1.0 / rate : INFINITY;
 }
 
 void TimeStepGuard::look_at_shells(const sd_system &system, const Resist &resist, Scene &scene,

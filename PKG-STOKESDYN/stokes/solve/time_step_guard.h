@@ -54,7 +54,7 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
             bool preconditioned, double solves);
 
   /* R v of spheres whose resistance is a solve of its own, [6 n] in and out: shells of points */
-  using Resist = std::function<sd_status(const std::vector<double> &v, std::vector<double> &Rv)>;
+  using Resist = std::function<sd_status(const double *v, double *Rv)>;
   /* The same of those; system: the drags of spheres alone */
   void look_at_shells(const sd_system &system, const Resist &resist, Scene &scene, double solves);
 

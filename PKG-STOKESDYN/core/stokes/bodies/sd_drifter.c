@@ -214,3 +214,9 @@ void sd_drifter_hand_on(const sd_bodies *A, int turning, double *of_bodies, doub
     }
   }
 }
+
+void sd_drifter_add(const sd_bodies *A, const sd_drifter_drawn *drawn, double *u, double *F)
+{
+  for (long j = 0; j < sd_bodies_unknowns(A); j++) u[j] += drawn->slip[j] + drawn->slip_left[j];
+  for (long j = 0; j < sd_bodies_loads(A); j++) F[j] += drawn->load[j] + drawn->load_left[j];
+}

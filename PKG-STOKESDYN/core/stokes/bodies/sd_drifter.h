@@ -78,5 +78,13 @@ double sd_drifter_moves(const sd_bodies *A, const sd_drifter_random *random, dou
  * each, of width 6. They are 0 in of_bodies then. */
 void sd_drifter_hand_on(const sd_bodies *A, int turning, double *of_bodies, double *load);
 
+/* What one solve has besides: slip y [points] and forces f_L [spheres] as they were drawn, and what its mean
+ * lacks without slip_left and load_left, likewise */
+typedef struct {
+  const double *slip, *load, *slip_left, *load_left;
+} sd_drifter_drawn;
+/* All of that to the flow u [points] and the loads F [spheres] of the solve */
+void sd_drifter_add(const sd_bodies *A, const sd_drifter_drawn *drawn, double *u, double *F);
+
 SD_END_C
 #endif

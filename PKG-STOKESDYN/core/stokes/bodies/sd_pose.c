@@ -5,9 +5,10 @@
 #include <math.h>
 #include <string.h>
 
-void sd_mean_velocity(int n, const double *v, const double *v_old, double c, double *out)
+void sd_step_move(const sd_step *step, int n, const double *v, const double *v_old, const double *y, double *move)
 {
-  for (int k = 0; k < n; k++) out[k] = v[k] + c * (v[k] - v_old[k]);
+  for (int k = 0; k < n; k++)
+    move[k] = step->dt * (v[k] + step->change * (v[k] - v_old[k])) + (y ? step->noise * y[k] : 0.0);
 }
 
 /* c = cos(h), s = sin(h)/(2 h), h = |w|/2: the quaternion (c, s w) */

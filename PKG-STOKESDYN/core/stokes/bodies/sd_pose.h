@@ -1,7 +1,7 @@
 /* Where a step of motion without inertia leads: Adams and Bashforth's of second order, for steps
  * that change, or Euler's.
  *
- *   x' = x + dt V_mean,   V_mean = v + c (v - v_old),   c = dt / (2 dt_old), or 0: Euler
+ *   x' = x + dt [v + c (v - v_old)] + sqrt(2 kT dt) y,   c = dt / (2 dt_old), or 0: Euler
  *
  * A rigid body keeps the shape it has: its spheres are put where its pose says, c + R X_k, and R
  * is turned by the rotation of the vector dt W. Of order 2 (1) in the pose as well. */
@@ -12,8 +12,13 @@
 
 SD_BEGIN_C
 
-/* out [n] = v + c (v - v_old). Aliases are allowed. */
-void sd_mean_velocity(int n, const double *v, const double *v_old, double c, double *out);
+/* dt, c, and sqrt(2 kT dt) of y, which is random: 0 without noise */
+typedef struct {
+  double dt, change, noise;
+} sd_step;
+/* move [n] = x' - x by v and v_old [n], and y [n] (NULL: 0). Aliases are allowed. */
+void sd_step_move(const sd_step *step, int n, const double *v, const double *v_old, const double *y,
+                  double *move);
 
 /* Rotation matrix R [9], row-major, of the vector w [3]: by |w| about it. Through the unit
  * quaternion (cos |w|/2, sin(|w|/2) w/|w|), so that R is a rotation to rounding for any w. */

@@ -148,13 +148,10 @@ void sd_clump_move_alone(const sd_clump_placed *placed, const sd_clump_motion *m
   sd_clump_flow(placed->shape, m, placed->pose, placed->pose + 9, u, G);
   if (load) free_velocity(placed, load, u, m->u ? G : NULL, V);
   for (int k = 0; k < placed->shape->n; k++) {
-    double arm[3], turning[3], *of = out->v + (long) out->width * k;
+    double arm[3], *of = out->v + (long) out->width * k;
     sd_multiply3(placed->pose, placed->shape->x + 3 * k, arm);
-    sd_cross(V + 3, arm, turning);
-    for (int d = 0; d < 3; d++) {
-      of[d] = V[d] + turning[d];
-      of[3 + d] = V[3 + d];
-    }
+    memcpy(of, V, 6 * sizeof(double));
+    sd_clump_shift_velocity(arm, of);
   }
   drag_of_slip(placed, m->u != NULL, u, G, V, V + 3, out);
 }

@@ -46,6 +46,14 @@ static inline void sd_clump_add_load(const double arm[3], const double FT[6], do
   }
 }
 
+/* Velocity and angular velocity V [6] at a point of a rigid body become those at arm [3] from there. */
+static inline void sd_clump_shift_velocity(const double arm[3], double V[6])
+{
+  double turning[3];
+  sd_cross(V + 3, arm, turning);
+  for (int d = 0; d < 3; d++) V[d] += turning[d];
+}
+
 /* A clump without inertia that no other disturbs: under the load on its spheres, force and torque about the
  * centroid, it moves with V [6], U of the centroid and W; load NULL: with the V that is given. Free:
  *   (U, W) = (u, curl u / 2) + N (load + eta C : E) / eta

@@ -133,10 +133,9 @@ sd_status sd_lubrication_stress(const sd_lubrication *L, const double *V, double
  * 0 in a flow without a strain. V [6n] */
 void sd_lubrication_strain_power(const sd_lubrication *L, const double *V, double *out);
 
-/* The largest eigenvalue of W^-1 L, W > 0 [6 n] an inertia: the rate at which the stiffest motion
- * decays. By power iteration from v [6 n], not 0: a few per cent low at most where a pair is
- * stiffer than all others. work [6 n]. sum over the ranks, NULL: one. SD_OK; SD_ENOTFINITE; that
- * of a function of the caller. */
+/* The rate at which the stiffest motion decays that films alone resist (sd_rate.h), by 30 products. W > 0
+ * [6 n]: an inertia; v [6 n], not 0, is another then; work [6 n]. SD_OK; SD_ENOTFINITE; that of a function
+ * of the caller. */
 sd_status sd_lubrication_rate(sd_lubrication *L, const double *W, double *v, double *work,
                               double *rate);
 void sd_lubrication_free(sd_lubrication *L);

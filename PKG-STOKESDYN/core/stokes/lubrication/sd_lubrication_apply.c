@@ -1,7 +1,8 @@
 /* What follows from films that stand: products, power, rate and stress. */
 #include "sd_lubrication_internal.h"
 
-#include <math.h>
+#include "sd_rate.h"
+
 #include <string.h>
 
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
@@ -29,30 +30,12 @@ void sd_lubrication_strain_power(const sd_lubrication *L, const double *V, doubl
   }
 }
 
-/* Rayleigh's quotient v.L v / v.W v of v := W^-1 L v, again and again */
 sd_status sd_lubrication_rate(sd_lubrication *L, const double *W, double *v, double *work,
                               double *rate)
 {
-  enum { STEPS = 30 };
-  const sd_world *world = &L->world;
-  *rate = 0.0;
-  for (int k = 0; k < STEPS; k++) {
-    sd_status status = sd_lubrication_apply(L, v, work);
-    double sums[3] = {0.0, 0.0, 0.0};
-    for (long j = 0; j < 6 * (long) L->n; j++) {
-      sums[0] += v[j] * work[j];
-      sums[1] += v[j] * W[j] * v[j];
-      sums[2] += work[j] * work[j] / W[j];
-    }
-    if (status == SD_OK && world->sum) status = world->sum(world->ctx, sums, 3);
-    if (status != SD_OK) return status;
-    if (!isfinite(sums[0]) || !isfinite(sums[2])) return SD_ENOTFINITE;
-    if (!(sums[2] > 0.0)) return SD_OK; /* nobody is near */
-    *rate = fmax(*rate, sums[0] / sums[1]);
-    const double scale = 1.0 / sqrt(sums[2]); /* v.W v = 1 */
-    for (long j = 0; j < 6 * (long) L->n; j++) v[j] = scale * work[j] / W[j];
-  }
-  return SD_OK;
+  enum { PRODUCTS = 30 };
+  const sd_decay films = {6 * (long) L->n, W, sd_lubrication_apply, L, &L->world};
+  return sd_rate(&films, PRODUCTS, v, work, rate);
 }
 
 /* Half of d F dev-symmetric times the distance, to sphere i and, if it is this rank's, j. F: of the

@@ -106,3 +106,10 @@ void sd_multiblob_moments(int spheres, const int *first, const double *r, const 
   for (long i = 0; i < spheres; i++)
     sd_multiblob_moment(first[i + 1] - first[i], r + 3L * first[i], f + 3L * first[i], S + 6 * i);
 }
+
+void sd_multiblob_forces(int spheres, const int *first, const double *f, double *F)
+{
+  for (long i = 0; i < spheres; i++)
+    for (long k = first[i]; k < first[i + 1]; k++)
+      for (int d = 0; d < 3; d++) F[3 * i + d] += f[3 * k + d];
+}

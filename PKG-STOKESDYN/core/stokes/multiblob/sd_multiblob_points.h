@@ -90,8 +90,10 @@ void sd_multiblob_add(const void *ctx, int begin, int end, const double *f, doub
  * yy zz xy xz yz: S [6] += dev sym sum r_k f_k. f acts on the fluid; the stress of the suspension is
  * 2 eta E - (sum of S)/V. */
 void sd_multiblob_moment(long points, const double *r, const double *f, double S[6]);
-/* Of so many spheres, whose rows begin at first [spheres + 1]: S [6 spheres] */
+/* Of so many spheres, whose rows begin at first [spheres + 1]: S [6 spheres]; and what the points of each
+ * exert together, F [3 spheres] += sum f_k */
 void sd_multiblob_moments(int spheres, const int *first, const double *r, const double *f, double *S);
+void sd_multiblob_forces(int spheres, const int *first, const double *f, double *F);
 
 SD_END_C
 #endif

@@ -157,6 +157,25 @@ static void torques_are_handed_to_one_sphere(void **state)
   CHECK_NEAR(load[9], before[9], 0.0);
 }
 
+/* A solve has what was drawn and what is left, the slip at points of 3 numbers and loads on spheres of 6. */
+static void all_that_is_drawn_is_solved_for(void **state)
+{
+  (void) state;
+  static const int whole[2] = {0, 1}, sphere[3] = {0, 1, 1};
+  const sd_bodies A = {.shaped = 2, .spheres = {2, 6, whole, NULL}, .points = {3, 3, sphere, NULL}};
+  double slip[9], slip_left[9], load[12], load_left[12], u[10], F[13];
+  for (int j = 0; j < 9; j++) slip[j] = 0.5 + j, slip_left[j] = -0.25 * j;
+  for (int j = 0; j < 12; j++) load[j] = 7.0 - j, load_left[j] = 0.125 * j;
+  for (int j = 0; j < 10; j++) u[j] = 100.0;
+  for (int j = 0; j < 13; j++) F[j] = -100.0;
+  const sd_drifter_drawn drawn = {slip, load, slip_left, load_left};
+  sd_drifter_add(&A, &drawn, u, F);
+  for (int j = 0; j < 9; j++) CHECK_NEAR(u[j], 100.5 + 0.75 * j, 0.0);
+  for (int j = 0; j < 12; j++) CHECK_NEAR(F[j], -93.0 - 0.875 * j, 0.0);
+  CHECK_NEAR(u[9], 100.0, 0.0);
+  CHECK_NEAR(F[12], -100.0, 0.0);
+}
+
 /* Half a step of 3 % at most off, the same in all units of length, for a body of any size in its own splitting, and
  * whichever of the splittings of these steps comes first: a run that is cut goes on as the whole one */
 static void a_root_is_of_a_splitting_over_the_size(void **state)
@@ -195,6 +214,7 @@ int main(void)
       cmocka_unit_test(slip_and_torque_turn_with_the_body),
       cmocka_unit_test(moves_and_forces_go_together),
       cmocka_unit_test(torques_are_handed_to_one_sphere),
+      cmocka_unit_test(all_that_is_drawn_is_solved_for),
       cmocka_unit_test(a_root_is_of_a_splitting_over_the_size),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,6 +3,8 @@
 
 #include "table.h"
 
+#include "sd_clump_motion.h"
+
 static const double P6 = 6.0 * SD_PI;
 static const double doublet[6] = {0, 0, -1, 0, 0, 1};
 static const double chain5[15] = {0, 0, -4, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 0, 4};
@@ -56,6 +58,24 @@ static void steady_turn_is_exact(void **state)
   for (int k = 0; k < 5; k++)
     for (int d = 0; d < 3; d++)
       CHECK_NEAR(x[3 * k + d], 10.0 * V[d] + R[3 * d + 2] * chain5[3 * k + 2], 1e-13);
+}
+
+/* The velocity at a point of a body is what a short step moves it by, to the square of the step. */
+static void points_move_with_their_body(void **state)
+{
+  (void) state;
+  const double dt = 1e-5, start[12] = {0.6, 0, 0.8, 0, 1, 0, -0.8, 0, 0.6, 3, -4, 5};
+  const double V[6] = {0.3, -1.1, 0.7, 2.0, 0.5, -1.4}, X[3] = {1.7, -0.4, 2.2};
+  double pose[12], turn[9], x[3], arm[3], there[6];
+  memcpy(pose, start, sizeof(pose));
+  advance_pose(pose, V, dt, 1, X, turn, x);
+  sd_multiply3(start, X, arm);
+  memcpy(there, V, sizeof(there));
+  sd_clump_shift_velocity(arm, there);
+  for (int d = 0; d < 3; d++) {
+    CHECK_NEAR((x[d] - start[9 + d] - arm[d]) / dt, there[d], 20.0 * dt);
+    CHECK_NEAR(there[3 + d], V[3 + d], 0.0);
+  }
 }
 
 /* A direction that turns by a million small rotations is where one large one takes it, and is as long. */
@@ -121,21 +141,26 @@ static void quaternions_turn_as_matrices_do(void **state)
   }
 }
 
-/* Adams and Bashforth's step is exact for velocities linear in time, with steps that change. */
+/* Adams and Bashforth's step is exact for velocities linear in time, with steps that change; noise is added to it. */
 static void changing_steps_stay_second_order(void **state)
 {
   (void) state;
-  double x = 0.0, t = 0.0, before = 0.1, v, v_old = 2.0 - 3.0 * before;
+  const double y = -0.7, noise = 0.3;
+  double x = 0.0, noisy = 0.0, t = 0.0, before = 0.1, v, v_old = 2.0 - 3.0 * before;
   const double steps[4] = {0.1, 0.2, 0.05, 0.4};
   for (int k = 0; k < 4; k++) {
-    double mean;
+    const sd_step step = {steps[k], steps[k] / (2.0 * before), noise};
+    double move;
     v = 2.0 + 3.0 * t;
-    sd_mean_velocity(1, &v, &v_old, steps[k] / (2.0 * before), &mean);
-    x += steps[k] * mean;
+    sd_step_move(&step, 1, &v, &v_old, NULL, &move);
+    x += move;
+    sd_step_move(&step, 1, &v, &v_old, &y, &move);
+    noisy += move;
     t += steps[k];
     v_old = v;
     before = steps[k];
     CHECK_NEAR(x, 2.0 * t + 1.5 * t * t, 1e-14);
+    CHECK_NEAR(noisy, x + (k + 1) * noise * y, 1e-14);
   }
 }
 
@@ -194,13 +219,14 @@ static void fall(flock *f, int width, double t, int n, int ab2)
     memcpy(V, f->V, sizeof(double) * 6 * (size_t) f->clumps);
     for (int e = 0; e < f->free; e++)
       memcpy(V + 6 * (f->clumps + e), f->v + width * f->loner[e], sizeof(double) * (size_t) width);
-    double mean[6 * FLOCK_MOST];
-    sd_mean_velocity(6 * bodies, V, k ? old : V, ab2 ? 0.5 : 0.0, mean);
+    const sd_step step = {dt, ab2 ? 0.5 : 0.0, 0.0};
+    double moves[6 * FLOCK_MOST];
+    sd_step_move(&step, 6 * bodies, V, k ? old : V, NULL, moves);
     memcpy(old, V, sizeof(old));
     for (int b = 0; b < bodies; b++) {
       double turn[9], x[3 * 8];
       const int m = b < f->clumps ? f->m : 0;
-      advance_pose(f->pose + 12 * b, mean + 6 * b, dt, m, f->shape.x, turn, x);
+      advance_pose(f->pose + 12 * b, moves + 6 * b, 1.0, m, f->shape.x, turn, x);
     }
   }
 }
@@ -332,6 +358,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rotations_are_rotations),
       cmocka_unit_test(steady_turn_is_exact),
+      cmocka_unit_test(points_move_with_their_body),
       cmocka_unit_test(directions_keep_their_length),
       cmocka_unit_test(directions_turn_by_vectors_as_by_matrices),
       cmocka_unit_test(quaternions_turn_as_matrices_do),
