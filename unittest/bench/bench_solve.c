@@ -66,7 +66,8 @@ static void sparse_factor(const scene *s, double rho, sd_sparse *f, double *seco
 {
   const sd_spheres spheres = {s->x, s->a, s->w};
   const double begin = cpu();
-  if (sd_sparse_create(f, &RPY, &spheres, s->n, 3, rho, 0, 1) != SD_OK) abort();
+  const sd_precondition_case c = {.law = RPY, .spheres = spheres, .n = s->n, .width = 3, .parts = 1};
+  if (sd_sparse_create(f, &c, rho) != SD_OK) abort();
   *seconds = cpu() - begin;
 }
 
@@ -264,7 +265,8 @@ static void bench_rotating(const char *name, scene s, int m)
   solve_rotating("diagonal", &s, spin, NULL, NULL, 0.0);
   sd_sparse f = {0};
   double begin = cpu();
-  if (sd_sparse_create(&f, &RPY, &spheres, s.n, 6, 3.0, 0, 1) != SD_OK) abort();
+  const sd_precondition_case c = {.law = RPY, .spheres = spheres, .n = s.n, .width = 6, .parts = 1};
+  if (sd_sparse_create(&f, &c, 3.0) != SD_OK) abort();
   const double set_up = cpu() - begin;
   solve_rotating("sparse, rho 3", &s, spin, sd_sparse_apply, &f, set_up);
   sd_sparse_free(&f);

@@ -201,15 +201,15 @@ static int coincident(const sd_shape *s)
   return 0;
 }
 
-/* Table for the forces on the points of one surface, number k of so many */
+/* Table for the forces on the points of one surface */
 static sd_status solve_surface(const sd_shape *shape, const sd_surface *s,
                                const sd_clump_options *o, const sd_clump_need *need,
-                               sd_clump *clump, double *table, int k, int times)
+                               sd_clump *clump, double *table)
 {
   const int m = sd_clump_width(o);
   double *B = malloc(sizeof(double) * SD_CLUMP_COLUMNS * m * (size_t) s->n);
   if (!B) return SD_ENOMEMORY;
-  const sd_status status = sd_clump_solve(s, o, need, k, times, B, &clump->iterations);
+  const sd_status status = sd_clump_solve(s, o, need, B, &clump->iterations);
   if (status == SD_OK) clump_gather(shape, s, m, B, table);
   free(B);
   return status;
@@ -232,7 +232,7 @@ static sd_status solve_shells(const sd_shape *shape, const sd_clump_options *o, 
     sd_surface s;
     status = sd_surface_of_shells(shape, count, k, cache, &s);
     if (status == SD_OK) status = sd_clump_check_need(s.n, o, need);
-    if (status == SD_OK) status = solve_surface(shape, &s, o, need, clump, one, k, times);
+    if (status == SD_OK) status = solve_surface(shape, &s, o, need, clump, one);
     if (k == 0) clump->points = s.n;
     for (size_t i = 0; i < size && status == SD_OK; i++) clump->table[i] += one[i] / times;
     sd_surface_free(&s);
@@ -264,7 +264,7 @@ sd_status sd_clump_create(const sd_shape *shape, const sd_clump_options *o, sd_s
   } else if (o->shell == 1) {
     sd_surface s;
     status = sd_surface_of_centres(shape, &s);
-    if (status == SD_OK) status = solve_surface(shape, &s, o, need, clump, clump->table, 0, 1);
+    if (status == SD_OK) status = solve_surface(shape, &s, o, need, clump, clump->table);
     sd_surface_free(&s);
   } else
     status = solve_shells(shape, o, cache, clump, need);

@@ -10,9 +10,10 @@ enum { SD_CLUMP_COLUMNS = 12 }; /* unit slips: 3 velocities, 3 angular velocitie
 
 /* --- sd_clump_surface.c: the points that carry the unknown forces ----------------------------- */
 
-/* x [3n], a [n] their radii, sphere [n] whose they are. All of these: SD_OK or SD_ENOMEMORY. */
+/* x [3n], a [n] their radii, sphere [n] whose they are; number: of the orientation. All of these: SD_OK or
+ * SD_ENOMEMORY. */
 typedef struct {
-  int n;
+  int n, number;
   double *x, *a;
   int *sphere;
 } sd_surface;
@@ -22,8 +23,8 @@ void sd_surface_free(sd_surface *s);
 /* Centres alone, for shell 1 */
 sd_status sd_surface_of_centres(const sd_shape *shape, sd_surface *out);
 
-/* Exposed points for count [n] points a sphere (sizes of shells) and orientation number k */
-sd_status sd_surface_of_shells(const sd_shape *shape, const int *count, int k, sd_shells *cache,
+/* Exposed points for count [n] points a sphere (sizes of shells) and one of the orientations */
+sd_status sd_surface_of_shells(const sd_shape *shape, const int *count, int number, sd_shells *cache,
                                sd_surface *out);
 
 /* Which part of its surface every sphere shows: all of it, or by a fine shell of directions.
@@ -47,10 +48,9 @@ int sd_clump_width(const sd_clump_options *o);
 /* SD_OK, or SD_ENOMEMORY: neither way to solve fits */
 sd_status sd_clump_check_need(double points, const sd_clump_options *o, sd_clump_need *need);
 
-/* The unit slips at the points, B [12][width n]; solved in place. Orientation number k of so many,
- * for the progress.
- * iterations: raised to the largest number of an iterative solve. Errors as of sd_clump_create. */
+/* The unit slips at the points, B [12][width n]; solved in place. iterations: raised to the largest number
+ * of an iterative solve. Errors as of sd_clump_create. */
 sd_status sd_clump_solve(const sd_surface *s, const sd_clump_options *o, const sd_clump_need *need,
-                         int k, int times, double *B, int *iterations);
+                         double *B, int *iterations);
 
 #endif

@@ -101,10 +101,8 @@ static sd_status clump_solve_apply(void *ctx, const double *F, double *u)
 }
 
 /* Twelve right-hand sides pay for a sparse factor; where it cannot be made, the diagonal serves. */
-static sd_status solve_iterative(const sd_surface *s, const sd_clump_options *o, int k, int times,
-                                 double *B, int *iterations)
+static sd_status solve_iterative(const sd_surface *s, const sd_clump_options *o, double *B, int *iterations)
 {
-  const sd_law law = {.tensor = SD_TENSOR_RPY};
   const int m = sd_clump_width(o), n = s->n;
   const size_t N = (size_t) m * n;
   double *F = malloc(sizeof(double) * (N + (size_t) SD_SOLVE_WORK(n, m) + 3 * (size_t) n));
@@ -115,19 +113,20 @@ static sd_status solve_iterative(const sd_surface *s, const sd_clump_options *o,
     spin[i] = 8.0 * SD_PI * s->a[i] * s->a[i] * s->a[i];
     ones[i] = 1.0;
   }
-  const sd_spheres spheres = {s->x, s->a, ones};
-  operator op = {.o = o, .solves = SD_CLUMP_COLUMNS * times};
+  const sd_precondition_case points = {
+      .law = {.tensor = SD_TENSOR_RPY}, .spheres = {s->x, s->a, ones}, .n = n, .width = m, .parts = 1};
+  operator op = {.o = o, .solves = SD_CLUMP_COLUMNS * sd_surface_orientations(sd_shell_size(o->shell))};
   sd_system A = {
       .n = n, .drag = drag, .spin = m == 6 ? spin : NULL, .apply = clump_solve_apply, .apply_ctx = &op};
   sd_sparse factor;
-  if (sd_sparse_create(&factor, &law, &spheres, n, m, REACH, 0, 1) == SD_OK) {
+  if (sd_sparse_create(&factor, &points, REACH) == SD_OK) {
     A.precondition = sd_sparse_apply;
     A.precondition_ctx = &factor;
   }
-  sd_status status = sd_packed_all(&op.packed, SD_ISA_BEST, &law, &spheres, n, m);
+  sd_status status = sd_packed_all(&op.packed, SD_ISA_BEST, &points.law, &points.spheres, n, m);
   for (int c = 0; c < SD_CLUMP_COLUMNS && status == SD_OK; c++) {
     sd_solve_report report;
-    op.solve = SD_CLUMP_COLUMNS * k + c;
+    op.solve = SD_CLUMP_COLUMNS * s->number + c;
     op.products = 0;
     status =
         sd_solve_gradients(&A, B + N * (size_t) c, o->tolerance, o->max_iter, F, work, &report);
@@ -143,7 +142,7 @@ static sd_status solve_iterative(const sd_surface *s, const sd_clump_options *o,
 /* The dense way wherever it fits: it takes no tolerance, and twelve columns cost hardly more than
  * one. */
 sd_status sd_clump_solve(const sd_surface *s, const sd_clump_options *o, const sd_clump_need *need,
-                         int k, int times, double *B, int *iterations)
+                         double *B, int *iterations)
 {
   const int m = sd_clump_width(o);
   for (int c = 0; c < SD_CLUMP_COLUMNS; c++)
@@ -153,6 +152,5 @@ sd_status sd_clump_solve(const sd_surface *s, const sd_clump_options *o, const s
       memcpy(b, u, sizeof(u));
       if (m == 6) memcpy(b + 3, w, sizeof(w));
     }
-  return need->dense <= o->memory ? solve_dense(s, m, B)
-                                  : solve_iterative(s, o, k, times, B, iterations);
+  return need->dense <= o->memory ? solve_dense(s, m, B) : solve_iterative(s, o, B, iterations);
 }

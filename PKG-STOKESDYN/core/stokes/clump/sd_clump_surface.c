@@ -118,8 +118,8 @@ int sd_surface_orientations(int n)
   return n == 1 ? 1 : 1 + (96 - 1) / n;
 }
 
-/* Orientation number k: the first is the frame itself, the others spread evenly over all rotations
- * (unit quaternions from a three-dimensional additive sequence). */
+/* Number k: the first is the frame itself, the others spread evenly over all rotations (unit quaternions from a
+ * three-dimensional additive sequence). */
 static void orientation(int k, double Q[9])
 {
   const double t = fmod(k * 0.8191725133961645, 1.0),
@@ -153,14 +153,14 @@ sd_status sd_surface_of_centres(const sd_shape *s, sd_surface *out)
 
 /* Twice over the spheres: how deep is hidden and how many points there are at most, then the
  * points. */
-sd_status sd_surface_of_shells(const sd_shape *s, const int *count, int k, sd_shells *cache,
+sd_status sd_surface_of_shells(const sd_shape *s, const int *count, int number, sd_shells *cache,
                                sd_surface *out)
 {
   size_t total = 0;
   double Q[9], G[9], radius, point;
   const sd_shell *shell;
   sd_status status = SD_OK;
-  *out = (sd_surface){0};
+  *out = (sd_surface){.number = number};
   double *deep = malloc(sizeof(double) * (size_t) s->n);
   if (!deep) return SD_ENOMEMORY;
   for (int i = 0; i < s->n && status == SD_OK; i++) {
@@ -171,7 +171,7 @@ sd_status sd_surface_of_shells(const sd_shape *s, const int *count, int k, sd_sh
     total += (size_t) shell->n;
   }
   if (status == SD_OK) status = surface_allocate(out, total);
-  orientation(k, Q);
+  orientation(number, Q);
   sd_product3(s->frame, Q, G);
   for (int i = 0; i < s->n && status == SD_OK; i++) {
     status = get_shell(cache, count[i], &shell);

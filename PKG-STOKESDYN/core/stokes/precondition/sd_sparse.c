@@ -100,22 +100,23 @@ static sd_status sp_fill(sd_sparse *f, const sd_law *law, const sd_spheres *s)
   return status;
 }
 
-sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s, int n, int width,
-                           double rho, int part, int parts)
+sd_status sd_sparse_create(sd_sparse *f, const sd_precondition_case *c, double rho)
 {
+  const sd_spheres *s = &c->spheres;
+  const int n = c->n;
   memset(f, 0, sizeof(*f));
   for (int i = 0; i < n; i++)
     for (int d = 0; d < 3; d++)
       if (s->a[i] > 0.0 && !isfinite(s->x[3 * (long) i + d])) return SD_ENOTFINITE;
   f->n = n;
-  f->width = width;
-  f->part = part;
-  f->parts = parts;
+  f->width = c->width;
+  f->part = c->part;
+  f->parts = c->parts;
   f->root = malloc(sizeof(double) * (2 * (size_t) n + 1));
   f->scratch = malloc(sizeof(double) * (16 * (size_t) n + 1));
   sd_status status = f->root && f->scratch ? SD_OK : SD_ENOMEMORY;
-  if (status == SD_OK) status = sd_rows_find(&f->rows, s, n, rho, part, parts);
-  if (status == SD_OK) status = sp_fill(f, law, s);
+  if (status == SD_OK) status = sd_rows_find(&f->rows, s, n, rho, c->part, c->parts);
+  if (status == SD_OK) status = sp_fill(f, &c->law, s);
   if (status == SD_OK) sd_unit_roots(s, n, f->root);
   if (status != SD_OK) sd_sparse_free(f);
   return status;
@@ -146,8 +147,7 @@ static const double RHO = 3.0;
 
 static sd_status make(void *f, const sd_precondition_case *c)
 {
-  const sd_status status =
-      sd_sparse_create(f, &c->law, &c->spheres, c->n, c->width, RHO, c->part, c->parts);
+  const sd_status status = sd_sparse_create(f, c, RHO);
   const sd_status agreed = sd_world_agree(&c->world, status);
   if (agreed != SD_OK) sd_sparse_free(f);
   return agreed;

@@ -37,10 +37,9 @@ typedef struct {
 /* factor: an sd_sparse */
 void sd_sparse_free(void *factor);
 
-/* width: 3, or with rotation 6. SD_OK; SD_ENOMEMORY; SD_EINDEFINITE: a hard cut-off in
+/* Of the law and the spheres of c, this rank alone. SD_OK; SD_ENOMEMORY; SD_EINDEFINITE: a hard cut-off in
  * the law's place; SD_ENOTFINITE. On failure f is empty. */
-sd_status sd_sparse_create(sd_sparse *f, const sd_law *law, const sd_spheres *s, int n, int width,
-                           double rho, int part, int parts);
+sd_status sd_sparse_create(sd_sparse *f, const sd_precondition_case *c, double rho);
 
 /* z = P r (this part's share), in the signature of sd_precondition: ctx is an sd_sparse. */
 sd_status sd_sparse_apply(void *ctx, const double *r, double *z);

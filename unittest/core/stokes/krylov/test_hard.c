@@ -134,8 +134,9 @@ static void coincident_spheres_with_preconditioners(void **state)
   in_clumps one;
   sd_blocks b = {0};
   sd_sparse f = {0};
-  assert_int_equal(sd_blocks_make(&b, clumps_of(&one, RPY, spheres, 40, 3, 40)), SD_OK);
-  assert_int_equal(sd_sparse_create(&f, &RPY, &spheres, 40, 3, 3.0, 0, 1), SD_OK);
+  const sd_precondition_case *c = clumps_of(&one, RPY, spheres, 40, 3, 40);
+  assert_int_equal(sd_blocks_make(&b, c), SD_OK);
+  assert_int_equal(sd_sparse_create(&f, c, 3.0), SD_OK);
   double *slip = scene_uniform_slip(&s, U, 0.4 * U, 0), total[3][12] = {{0.0}};
   for (int i = 0; i < 40; i++) slip[3 * i + 2] = 0.1 * U * (i % 4);
   for (int k = 0; k < 3; k++) {
@@ -193,8 +194,9 @@ static void preconditioner_of_another_time(void **state)
   in_clumps one;
   sd_blocks b = {0};
   sd_sparse f = {0};
-  assert_int_equal(sd_blocks_make(&b, clumps_of(&one, RPY, spheres, 30, 3, 30)), SD_OK);
-  assert_int_equal(sd_sparse_create(&f, &RPY, &spheres, 30, 3, 3.0, 0, 1), SD_OK);
+  const sd_precondition_case *c = clumps_of(&one, RPY, spheres, 30, 3, 30);
+  assert_int_equal(sd_blocks_make(&b, c), SD_OK);
+  assert_int_equal(sd_sparse_create(&f, c, 3.0), SD_OK);
   double *slip = scene_uniform_slip(&s, U, 0, 0);
   for (double swell = 1.0; swell < 60.0; swell *= 3.0) {
     double *F[3];

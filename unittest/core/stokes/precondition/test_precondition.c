@@ -16,7 +16,8 @@ static sd_status blocks_of(sd_blocks *b, const scene *s, int m)
 static sd_status sparse_of(sd_sparse *f, const scene *s, double rho)
 {
   const sd_spheres spheres = {s->x, s->a, s->w};
-  return sd_sparse_create(f, &RPY, &spheres, s->n, 3, rho, 0, 1);
+  const sd_precondition_case c = {.law = RPY, .spheres = spheres, .n = s->n, .width = 3, .parts = 1};
+  return sd_sparse_create(f, &c, rho);
 }
 
 /* Iterations for uniform velocity to the tolerance; checks that it converges. Total force along x in *total. */
@@ -168,7 +169,8 @@ static void sparse_factor_is_symmetric_and_splits(void **state)
   double sum[3 * N] = {0}, part[3 * N];
   for (int k = 0; k < 3; k++) {
     sd_sparse g = {0};
-    assert_int_equal(sd_sparse_create(&g, &RPY, &spheres, N, 3, 3.0, k, 3), SD_OK);
+    const sd_precondition_case c = {.law = RPY, .spheres = spheres, .n = N, .width = 3, .part = k, .parts = 3};
+    assert_int_equal(sd_sparse_create(&g, &c, 3.0), SD_OK);
     sd_sparse_apply(&g, r[0], part);
     for (int i = 0; i < 3 * N; i++) sum[i] += part[i];
     sd_sparse_free(&g);

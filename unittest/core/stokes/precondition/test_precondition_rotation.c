@@ -44,7 +44,9 @@ static void apply_whole(const rotating *g, const double *F, double *u)
 static void sparse_of(sd_sparse *f, const rotating *g, double rho, int part, int parts)
 {
   const sd_spheres spheres = {g->s->x, g->s->a, g->s->w};
-  assert_int_equal(sd_sparse_create(f, &g->law, &spheres, g->s->n, 6, rho, part, parts), SD_OK);
+  const sd_precondition_case c = {
+      .law = g->law, .spheres = spheres, .n = g->s->n, .width = 6, .part = part, .parts = parts};
+  assert_int_equal(sd_sparse_create(f, &c, rho), SD_OK);
 }
 
 static const sd_precondition_case *clumps_in(in_clumps *k, const rotating *g, int m)
