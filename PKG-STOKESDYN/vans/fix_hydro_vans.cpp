@@ -369,12 +369,12 @@ void FixHydroVans::sum_up()
 
 void FixHydroVans::tell_outside()
 {
-  if (told_outside || !set.has_grains()) return;
+  if (stream.told.has(VansTold::OUTSIDE) || !set.has_grains()) return;
   sum_up();
   if (!(global.outside > 0.0)) return;
-  told_outside = true;
-  set.voice.warn(text(global.outside) + " grains are outside the mesh: " +
-                 (set.yade() ? "no force acts on them"
-                             : "those above it feel the velocity of the surface, those below it "
-                               "feel water at rest"));
+  stream.told.warn(VansTold::OUTSIDE,
+                   text(global.outside) + " grains are outside the mesh: " +
+                       (set.yade() ? "no force acts on them"
+                                   : "those above it feel the velocity of the surface, those below it feel water at "
+                                     "rest"));
 }

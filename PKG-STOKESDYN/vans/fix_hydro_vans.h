@@ -90,8 +90,6 @@ class FixHydroVans : public RowsFix {
   LAMMPS_NS::bigint summed_step = -1;
   /* have they been read, in this run or in one whose restart file has them? */
   bool variables_known = false;
-  bool told_outside = false, told_work = false, told_stiff = false, told_waves = false,
-       told_fall = false, told_roughness = false, told_smooth = false, told_overlap = false;
   Neighbourhood neighbourhood;
   /* of the last look at the grains' time step */
   LAMMPS_NS::bigint looked_step = -1;

@@ -120,12 +120,11 @@ void FixHydroVans::tell_waves()
   double lowest = HUGE_VAL;
   for (int n = 0; n < stream.ncell(); n++)
     lowest = std::min(lowest, sd_vans_height(&set.mesh, n));
-  if (told_waves || !set.upflow || set.couple != VansSettings::ONE || lowest > 3.0 * mean.radius)
-    return;
-  told_waves = true;
-  set.voice.warn("keyword upflow: in slices of " + text(lowest) + " a bed of grains of diameter " +
-                 text(2.0 * mean.radius) +
-                 " breaks up into waves and becomes too high: use slices of three diameters");
+  if (!set.upflow || set.couple != VansSettings::ONE || lowest > 3.0 * mean.radius) return;
+  stream.told.warn(VansTold::WAVES,
+                   "keyword upflow: in slices of " + text(lowest) + " a bed of grains of diameter " +
+                       text(2.0 * mean.radius) +
+                       " breaks up into waves and becomes too high: use slices of three diameters");
 }
 
 /* What the grains got from the water since the last coupling: those of the group as booked step by

@@ -1,5 +1,7 @@
 #include "fix_hydro_vans.h"
 
+#include "vans_files.h"
+
 #include <cmath>
 #include <cstring>
 

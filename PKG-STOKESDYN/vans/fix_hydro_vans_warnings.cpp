@@ -40,7 +40,7 @@ void FixHydroVans::look_at_gravity() const
  * for all whose weights differ by less than a hundredth. */
 void FixHydroVans::tell_fall()
 {
-  if (told_fall || set.drag_given || set.yade() || !set.has_grains()) return;
+  if (stream.told.has(VansTold::FALL) || set.drag_given || set.yade() || !set.has_grains()) return;
   const double g = std::sqrt(set.law.g[0] * set.law.g[0] + set.law.g[1] * set.law.g[1] +
                              set.law.g[2] * set.law.g[2]), rho = set.law.rho, eta = set.law.eta;
   sd_drag_law alone = set.law.drag, sphere = alone;
@@ -66,18 +66,18 @@ void FixHydroVans::tell_fall()
   MPI_Allreduce(&mine, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
   if (!(worst.ratio > 1.1)) return;
   MPI_Bcast(found, 4, MPI_DOUBLE, worst.rank, world);
-  told_fall = true;
-  set.voice.warn("keyword drag: by its default, yade, a lone grain of radius " + text(found[0]) +
-                 " falls at " + text(found[1]) + ", a sphere in fact at " + text(found[2]) +
-                 " (Re = " + text(found[3]) + "): use drag brown_lawler for spheres, ferguson_church for "
-                 "sand, or write drag yade if you want that law");
+  stream.told.warn(VansTold::FALL,
+                   "keyword drag: by its default, yade, a lone grain of radius " + text(found[0]) + " falls at " +
+                       text(found[1]) + ", a sphere in fact at " + text(found[2]) + " (Re = " + text(found[3]) +
+                       "): use drag brown_lawler for spheres, ferguson_church for sand, or write drag yade if you "
+                       "want that law");
 }
 
 /* Which roughness the law of the mixing length gives a bed of grains that do not move: the middle of
  * two depths of water over one such bed (page vans_stream). The other laws are not known. */
 void FixHydroVans::tell_roughness()
 {
-  if (told_roughness || set.couple != VansSettings::TWO || set.upflow || set.yade()) return;
+  if (set.couple != VansSettings::TWO || set.upflow || set.yade()) return;
   const char *name = nullptr;
   double rough = 0.0;
   switch (set.fluid.turbulence) {
@@ -96,9 +96,9 @@ void FixHydroVans::tell_roughness()
     default:
       return;
   }
-  told_roughness = true;
-  set.voice.tell(std::string("turbulence ") + name + ": a bed of fixed grains is about as rough as k_s = " +
-                 text(rough) + " grain diameters; flumes have 1 to 2");
+  stream.told.tell(VansTold::ROUGHNESS, std::string("turbulence ") + name +
+                                            ": a bed of fixed grains is about as rough as k_s = " + text(rough) +
+                                            " grain diameters; flumes have 1 to 2");
 }
 
 /* Without `sublayer yes` these laws rub on a smooth bottom as if it had grains (page vans_stream). */
@@ -109,28 +109,29 @@ void FixHydroVans::tell_smooth()
                                                                    {SD_VANS_LI_SAWAMOTO, "li_sawamoto"},
                                                                    {SD_VANS_NI_CAPART, "ni_capart"}};
   const auto law = NAMES.find(set.fluid.turbulence);
-  if (told_smooth || !set.solves() || set.fluid.sublayer || set.yade() || law == NAMES.end()) return;
+  if (stream.told.has(VansTold::SMOOTH) || !set.solves() || set.fluid.sublayer || set.yade() || law == NAMES.end())
+    return;
   const double *phi = stream.phi();
   bigint mine = std::any_of(phi, phi + stream.ncell(), [](double part) { return part > 0.0; }), all;
   if (set.has_grains())
     for (int i = 0; i < atom->nlocal; i++) mine += (atom->mask[i] & average_bit) != 0;
   MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all > 0) return;
-  told_smooth = true;
-  set.voice.warn(std::string("keyword turbulence: there are no grains, and with ") + law->second +
-                 " a smooth bottom rubs as if it had grains of 75 nu/u_star: use sublayer yes, or turbulence rousseau");
+  stream.told.warn(VansTold::SMOOTH, std::string("keyword turbulence: there are no grains, and with ") + law->second +
+                                         " a smooth bottom rubs as if it had grains of 75 nu/u_star: use sublayer "
+                                         "yes, or turbulence rousseau");
 }
 
 /* Once: by the default a clump whose members overlap has the buoyancy and the drag of all of them */
 void FixHydroVans::tell_overlap()
 {
-  if (told_overlap || set.overlap_given || !atom->molecule_flag || set.yade() || !set.has_grains()) return;
+  if (stream.told.has(VansTold::OVERLAP) || set.overlap_given || !atom->molecule_flag || set.yade() || !set.has_grains()) return;
   const tagint first = overlaps.first(groupbit | average_bit);
   if (first == 0) return;
-  told_overlap = true;
-  set.voice.warn("keyword overlap: by its default, twice, what members of the clump of molecule " +
-                 std::to_string(first) + " share counts twice, in buoyancy, drag and phi: use overlap once, or write "
-                 "overlap twice if you want that");
+  stream.told.warn(VansTold::OVERLAP,
+                   "keyword overlap: by its default, twice, what members of the clump of molecule " +
+                       std::to_string(first) + " share counts twice, in buoyancy, drag and phi: use overlap once, or "
+                       "write overlap twice if you want that");
 }
 
 /* What a coupling does, where it is not what the keywords seem to say, or takes seconds. */
@@ -149,12 +150,10 @@ void FixHydroVans::tell_steps()
   if (set.couple == VansSettings::TWO && std::fabs(T / of_grains - 1.0) > 1e-9)
     set.voice.tell("every coupling solves the stream over the time " + text(T) +
                    ", but the grains move for " + text(of_grains) + " between couplings");
-  if (steps * N > 1e9 && !told_work) {
-    told_work = true;
-    set.voice.warn("keyword solve: " + text((double) steps) + " steps of " + text(N) +
-                   " slices in every coupling take about " + text(5e-9 * steps * N) +
-                   " seconds each time");
-  }
+  if (steps * N > 1e9)
+    stream.told.warn(VansTold::WORK, "keyword solve: " + text((double) steps) + " steps of " + text(N) +
+                                         " slices in every coupling take about " + text(5e-9 * steps * N) +
+                                         " seconds each time");
 }
 
 /* The exchange of rules yade knows one size or classes. */
@@ -178,7 +177,7 @@ void FixHydroVans::tell_sizes()
  * at when a run begins and then every 100 steps at most. */
 void FixHydroVans::tell_stiff()
 {
-  if (told_stiff || !set.has_grains()) return;
+  if (stream.told.has(VansTold::STIFF) || !set.has_grains()) return;
   if (looked_step >= 0 && update->ntimestep < looked_step + 100) return;
   looked_step = update->ntimestep;
   select(groupbit);
@@ -196,9 +195,9 @@ void FixHydroVans::tell_stiff()
   if (!(largest.rate * update->dt > 1.0)) return;
   double tag = stiffest < 0 ? 0.0 : (double) atom->tag[stiffest];
   MPI_Bcast(&tag, 1, MPI_DOUBLE, largest.rank, world);
-  told_stiff = true;
-  set.voice.warn("the time step " + text(update->dt) + " is too long for the drag on atom " +
-                 std::to_string((bigint) tag) + ", which changes its velocity at the rate " + text(largest.rate) +
-                 ": take at most " + text(1.0 / largest.rate) + "; beyond " +
-                 text(2.0 / largest.rate) + " the velocity grows without bound");
+  stream.told.warn(VansTold::STIFF,
+                   "the time step " + text(update->dt) + " is too long for the drag on atom " +
+                       std::to_string((bigint) tag) + ", which changes its velocity at the rate " +
+                       text(largest.rate) + ": take at most " + text(1.0 / largest.rate) + "; beyond " +
+                       text(2.0 / largest.rate) + " the velocity grows without bound");
 }

@@ -107,17 +107,8 @@ struct VansSettings {
   void take_sidewall(Keywords &in);
   void check(const Keywords &in) const;
   void check_yade(const Keywords &in) const;
-  void read_mesh();
   void read_files();
 };
-
-/* ncell + 1 numbers of a file: the velocities of the water. */
-std::vector<double> read_profile(const Voice &what, const std::string &file, int ncell);
-
-/* The columns of a file for keyword given: phi, velocity, drag, then, if nclass, phi and drag of
- * each class; the latter may be missing. */
-std::vector<std::vector<double>> read_given(const Voice &what, const std::string &file, int ncell,
-                                            size_t nclass);
 
 }    // namespace StokesDyn
 #endif

@@ -9,7 +9,7 @@ using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
 VansStream::VansStream(const VansSettings &settings) :
-    set(settings), mesh(set.mesh), wet(set.mesh), fluid(set.fluid), U(set.profile),
+    set(settings), told(set.voice), mesh(set.mesh), wet(set.mesh), fluid(set.fluid), U(set.profile),
     wet_edge(set.edge), solver(sd_vans_solver_create(&wet), sd_vans_solver_free)
 {
   const int N = ncell();
@@ -213,27 +213,23 @@ void VansStream::tell_limits(double T, double dt, bool held, const double cut[2]
   int slice = 0;
   const double rate = sd_vans_drag_rate(&mesh, &fluid, U.data(), hindrance.data(), grain.data(),
                                         &slice);
-  if (set.couple == VansSettings::TWO && !held && !told_far && rate * T > 3.0) {
-    told_far = true;
-    set.voice.warn("the couplings are too far apart: drag changes the water at z = " +
-                   text(mesh.z_ref + mesh.edge[slice]) + " at the rate b = " + text(rate) +
-                   ", b T = " + text(rate * T) + " for the time T = " + text(T) +
-                   " of one solve. Above 3 the drag overshoots, more with every coupling. Use a T "
-                   "of at most " + text(3.0 / rate) +
-                   (set.period > 0.0
-                        ? ": a shorter period of keyword solve, and N steps that take as long"
-                        : ": fewer steps N"));
-  }
+  if (set.couple == VansSettings::TWO && !held && rate * T > 3.0)
+    told.warn(VansTold::FAR_APART,
+              "the couplings are too far apart: drag changes the water at z = " +
+                  text(mesh.z_ref + mesh.edge[slice]) + " at the rate b = " + text(rate) + ", b T = " +
+                  text(rate * T) + " for the time T = " + text(T) +
+                  " of one solve. Above 3 the drag overshoots, more with every coupling. Use a T of at most " +
+                  text(3.0 / rate) +
+                  (set.period > 0.0 ? ": a shorter period of keyword solve, and N steps that take as long"
+                                    : ": fewer steps N"));
   const double force = std::fabs(fluid.rho * drive) * wet.edge[wet.ncell - 1];
-  if (!set.conserve && !told_cut && cut[0] > 0.05 * cut[1] && cut[1] > 0.01 * force) {
-    told_cut = true;
-    set.voice.warn(text(100.0 * cut[0] / cut[1]) +
-                   " % of the drag does not reach the water: the exchange coefficient b is at "
-                   "most 1/(10 dt) = " +
-                   text(0.1 / dt) + ", and this drag needs a b of up to " + text(rate) +
-                   ". Use a step dt of keyword solve of at most " + text(0.1 / rate) + ", or " +
-                   (set.yade() ? "rules consistent" : "conserve yes"));
-  }
+  if (!set.conserve && cut[0] > 0.05 * cut[1] && cut[1] > 0.01 * force)
+    told.warn(VansTold::CUT_OFF,
+              text(100.0 * cut[0] / cut[1]) +
+                  " % of the drag does not reach the water: the exchange coefficient b is at most 1/(10 dt) = " +
+                  text(0.1 / dt) + ", and this drag needs a b of up to " + text(rate) +
+                  ". Use a step dt of keyword solve of at most " + text(0.1 / rate) + ", or " +
+                  (set.yade() ? "rules consistent" : "conserve yes"));
 }
 
 /* Viscosity alone rubs on a bottom without grains. In a slice that goes beyond its layer that is too little; the
@@ -241,14 +237,15 @@ void VansStream::tell_limits(double T, double dt, bool held, const double cut[2]
 void VansStream::tell_bottom()
 {
   constexpr double HIGHEST = 20.0, FINE = 5.0;
-  if (told_bottom || set.yade() || fluid.turbulence == SD_VANS_LAMINAR || phi()[0] > 0.0) return;
+  if (told.has(VansTold::HIGH_BOTTOM) || set.yade() || fluid.turbulence == SD_VANS_LAMINAR || phi()[0] > 0.0) return;
   const double size = sd_vans_bottom_slice(&mesh, &fluid, U.data());
   if (!(size > HIGHEST)) return;
-  told_bottom = true;
-  set.voice.warn("keyword mesh: the lowest slice has no grains and is " + text(size) +
-                 " nu/u_star high: above 20 the bottom rubs too little and the stream becomes too fast, twice as fast "
-                 "at 100; give the lowest slices a height of at most " + text(FINE / size * sd_vans_height(&mesh, 0)) +
-                 ", 5 nu/u_star (mesh file NAME has slices of different heights)");
+  told.warn(VansTold::HIGH_BOTTOM,
+            "keyword mesh: the lowest slice has no grains and is " + text(size) +
+                " nu/u_star high: above 20 the bottom rubs too little and the stream becomes too fast, twice as fast "
+                "at 100; give the lowest slices a height of at most " +
+                text(FINE / size * sd_vans_height(&mesh, 0)) +
+                ", 5 nu/u_star (mesh file NAME has slices of different heights)");
 }
 
 /* b, and what it has too much at the start as a source. */

@@ -7,6 +7,7 @@
 #include "sd_vans_books.h"
 #include "sd_vans_steady.h"
 #include "vans_settings.h"
+#include "vans_told.h"
 
 #include <deque>
 #include <memory>
@@ -19,6 +20,7 @@ class VansStream {
   explicit VansStream(const VansSettings &settings);
 
   const VansSettings &set;
+  VansTold told;
   const sd_vans_mesh &mesh;
   /* the slices of the water and one above its surface: the mesh itself unless the surface moves */
   sd_vans_mesh wet;
@@ -131,7 +133,6 @@ class VansStream {
   std::vector<double> scratch;
   /* is drag_density that of the profile? */
   bool density_known = false;
-  bool told_far = false, told_cut = false, told_bottom = false;
 
   const double *classes() const;
   void move_surface(double area, const std::vector<double> &phi_before);
