@@ -170,7 +170,7 @@ def draw(errors, costs, path):
         panel.legend(fontsize=7, loc="upper right")
         panel.axhspan(0.01, 1, color="C2", alpha=0.08)
         clumps = scene == "rigid clumps"
-        panel.set(title=scene, ylim=(0.02, 9000), xlim=(0.1, 1e4) if clumps else (1, 1000),
+        panel.set(title=scene, ylim=(0.02, 9000), xlim=(0.1, 1e4) if clumps else (0.1, 100),
                   xlabel="ms once per shape (13 spheres)" if clumps else "ms per step (864 spheres)")
     for panel in axes[:, 0]:
         panel.set_ylabel("error of the velocities, %")
