@@ -11,6 +11,7 @@
 #include "force.h"
 #include "modify.h"
 #include "pair.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -56,6 +57,12 @@ bool stands_behind(const Guest &guest, const char *style)
   for (int k = 0; k < modify->nfix && modify->fix[k] != guest.fix; k++)
     if (fits(style, modify->fix[k]->style)) return true;
   return false;
+}
+
+bool runs_back(const Guest &guest, std::string &says)
+{
+  says = text(guest.lmp->update->dt);
+  return guest.lmp->update->dt < 0.0;
 }
 
 // --- who is there --------------------------------------------------------------------------------

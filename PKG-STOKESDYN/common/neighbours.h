@@ -80,6 +80,9 @@ bool fits(const std::string &styles, const std::string &style);
 /* Does the guest, a fix, stand in the input behind one of this style? */
 bool stands_behind(const Guest &guest, const char *style);
 
+/* Is the time step below 0? says: what it is */
+bool runs_back(const Guest &guest, std::string &says);
+
 /* What this pair or bond style would write into data files, as far as it acts on atoms of ours:
  * lines of numbers, of a pair style i j and the coefficients of these types, of a bond style the
  * type and its coefficients; empty: it writes none. On all ranks together. */

@@ -81,12 +81,13 @@ const std::vector<Neighbour> &sph_neighbours()
        "lets sound grow at time steps above {} (3 alpha h/(8 c) in two dimensions, less in three), "
        "until the water boils: use fix nve/sph", lets_sound_grow, WATER},
       {N::FIX, "nve/sph nve/sph/stationary wall/adami/sph sph/grains", 0, N::ERROR,
-       "has the dynamic group {}, which is empty when the first forces are computed, and in some LAMMPS "
-       "is always that of the step before: use a group of fixed members, made anew between runs",
-       is_dynamic, N::ANYWHERE},
+       "has the dynamic group {}, which is empty when the first forces are computed, and in some LAMMPS is always "
+       "that of the step before: use a group of fixed members, made anew between runs", is_dynamic, N::ANYWHERE},
       {N::FIX, "recenter", 0, N::WARNING,
        "moves some of the particles without a velocity, so that the density knows nothing of it: name a group with "
        "all particles of water and walls, or take it out", moves_a_part},
+      {N::COMMAND, "timestep", 0, N::ERROR,
+       "is {}, and friction would drive velocities apart on the way back: use a positive one", runs_back, N::ANYWHERE},
       // walls
       {N::FIX, "wall/reflect* wall/lj* wall/harmonic* wall/morse wall/table wall/lepton wall/colloid "
                "wall/region wall/gran*", 0, N::WARNING,
@@ -96,17 +97,16 @@ const std::vector<Neighbour> &sph_neighbours()
        "moves a body that feels the pressure of the water, but not the pull of its surface at the contact line: "
        "what floats by surface tension sinks", nullptr, WALL},
       // grains
-      {N::FIX, "hydro/vans viscous* langevin* drag", GRAINS, N::ERROR,
+      {N::FIX, "hydro/vans viscous* langevin* lb/*", GRAINS, N::ERROR,
        "drags grains that the water of SPH drags already: take it out, or give it other atoms", nullptr, GRAIN},
       // what goes together
-      {N::FIX, "gravity addforce efield spring* wall/gran*", GRAINS, N::ERROR,
+      {N::FIX, "gravity addforce efield spring* drag wall/gran*", GRAINS, N::ERROR,
        "stands behind fix sph/grains in the input, whose drag is implicit, so that it must know all other forces: "
        "define it before", stands_behind_grains, GRAIN | WATER},
       {N::FIX, "freeze setforce planeforce lineforce", GRAINS, N::ERROR,
        "stands before fix sph/grains in the input, whose forces then move what it holds: define it behind",
        stands_before_grains, GRAIN},
-      {N::FIX, "wall/gran* gravity nve/sphere freeze", GRAINS, N::FINE,
-       "goes with grains in the water", nullptr, GRAIN},
+      {N::FIX, "wall/gran* gravity nve/sphere freeze", GRAINS, N::FINE, "goes with grains in the water", nullptr, GRAIN},
       {N::PAIR, "sph/heatconduction", 0, N::FINE, "changes the energy of particles alone"},
       {N::PAIR, "gran/* granular lj/* zero", 0, N::FINE,
        "acts between bodies of wall particles below hybrid or hybrid/overlay"},

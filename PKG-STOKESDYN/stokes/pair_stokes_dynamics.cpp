@@ -237,6 +237,7 @@ void PairStokesDynamics::look_at_neighbours()
   const std::vector<char> chosen = hydro.ambient.chosen_now();
   neighbourhood.look(voice, stokes_neighbours,
                      fact(FORCE, bits != 0) | fact(APPLIED, bits != 0 && !hydro.settings.add_force) |
+                         fact(ADDED, hydro.settings.add_force) |
                          fact(TURNING, hydro.rotation()) |
                          fact(RESTING, hydro.ambient.settings.rests()),
                      [&](int i) { return chosen[i] && (atom->mask[i] & bits) ? FREE : 0u; });

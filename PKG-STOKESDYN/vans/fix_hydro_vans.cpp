@@ -123,6 +123,7 @@ void FixHydroVans::init()
   look_at_neighbours();
   tell_fall();
   tell_overlap();
+  tell_weight();
 }
 
 /* A solve with a drag that is given. */

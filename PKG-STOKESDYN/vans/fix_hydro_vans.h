@@ -110,6 +110,7 @@ class FixHydroVans : public RowsFix {
   void tell_roughness();
   void tell_smooth();
   void tell_overlap();
+  void tell_weight();
   void tell_stiff();
   void tell_sizes();
   void tell_waves();

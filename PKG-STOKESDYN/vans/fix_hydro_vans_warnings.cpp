@@ -1,12 +1,15 @@
 /* Of fix hydro/vans: what a run may not do as one thinks, said once. */
 #include "fix_hydro_vans.h"
 
+#include "fixes.h"
 #include "gravity.h"
 #include "neighbours_vans.h"
+#include "ranks.h"
 #include "sd_sphere.h"
 
 #include "atom.h"
 #include "comm.h"
+#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -32,6 +35,32 @@ void FixHydroVans::look_at_gravity() const
   compare_gravity(set.voice, set.law.g, [this](int i) { return (atom->mask[i] & groupbit) != 0; },
                   {"grains", "they need the same slope as the water, and their full weight, since this fix adds the "
                              "buoyancy; give both the same numbers"});
+}
+
+/* The buoyancy lifts grains that have no weight, also those of the density of the water. Not told where another
+ * fix may have the weight or holds them, or where nobody moves them. */
+void FixHydroVans::tell_weight()
+{
+  const double *g = set.law.g;
+  const bool lifts = g[1] != 0.0 || g[2] != 0.0 || (set.law.rest && g[0] != 0.0);
+  if (stream.told.has(VansTold::WEIGHT) || !set.has_grains() || !lifts || update->nsteps == 0) return;
+  int moved = 0, given = 0;
+  for (int k = 0; k < modify->nfix; k++) {
+    const Fix *fix = modify->fix[k];
+    if (fits("gravity addforce* efield* external python* spring* drag smd freeze setforce aveforce planeforce "
+             "lineforce move", plain_style(fix->style)))
+      given |= fix->groupbit;
+    else if (fix->time_integrate) moved |= fix->groupbit;
+  }
+  const int *mask = atom->mask;
+  const tagint first = first_atom(lmp, [&](int i) {
+    return (mask[i] & groupbit) && (mask[i] & moved) && !(mask[i] & given);
+  });
+  if (first)
+    stream.told.warn(VansTold::WEIGHT,
+                     "keyword gravity: no fix gives atom " + std::to_string(first) + " a weight, so that the "
+                     "buoyancy, which this fix adds, lifts it: grains need their full weight (fix gravity with the "
+                     "same numbers), also those of the density of the water");
 }
 
 /* The law that holds unless one is chosen is made for beads of some millimetres in water. Where grains

@@ -30,7 +30,7 @@ const std::vector<Neighbour> &vans_neighbours()
       {N::FIX, "rigid* poems shake rattle", DRAGS, N::WARNING,
        "stands before this fix in the input, so that it reads forces before those of the water are added, and every "
        "run begins with a kick: define it behind", stands_before_stream},
-      {N::FIX, "viscous langevin* gld gle gjf ffl ttm* nve/dotc/langevin electron/stopping* brownian*", DRAGS,
+      {N::FIX, "viscous langevin* gld gle gjf ffl ttm* nve/dotc/langevin electron/stopping* brownian* lb/*", DRAGS,
        N::WARNING,
        "adds a drag to grains that the water drags as well, so that drag counts twice: take it out; for fluctuations "
        "of the water use the keyword fluctuation"},
@@ -40,6 +40,12 @@ const std::vector<Neighbour> &vans_neighbours()
       {N::FIX, "damping/cundall", DRAGS, N::WARNING,
        "stands behind this fix in the input and makes forces larger that oppose a velocity, and so also the drag of "
        "the water: define it before", stands_behind_stream},
+      {N::FIX, "srd", DRAGS, N::WARNING,
+       "has a fluid of its own: its big particles must be none of the grains that this water drags; this cannot be "
+       "checked", nullptr, N::ANYWHERE},
+      {N::COMMAND, "timestep", 0, N::ERROR,
+       "is {}, and neither drag nor the friction of the water have a way back: use a positive one", runs_back,
+       N::ANYWHERE},
   };
   return table;
 }

@@ -9,7 +9,8 @@ namespace StokesDyn {
 class VansTold {
  public:
   enum What {
-    FAR_APART, CUT_OFF, HIGH_BOTTOM, OUTSIDE, WORK, STIFF, WAVES, FALL, ROUGHNESS, SMOOTH, OVERLAP
+    FAR_APART, CUT_OFF, HIGH_BOTTOM, OUTSIDE, WORK, STIFF, WAVES, FALL, ROUGHNESS, SMOOTH, OVERLAP,
+    WEIGHT
   };
   explicit VansTold(const Voice &voice) : voice(voice) {}
 

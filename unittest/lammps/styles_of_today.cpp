@@ -129,5 +129,5 @@ extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *l
   add_plain("bond", "bpm/rotational", &make<Bond, BondToday<ROTATIONAL>>);
   add_plain("bond", "bpm/spring/plastic", &make<Bond, BondToday<SILENT>>);
   plugin.creator.of_command = &make_fix;
-  for (const char *name : {"damping/cundall", "viscous/omp", "viscous/sphere"}) add("fix", name);
+  for (const char *name : {"damping/cundall", "viscous/omp", "viscous/sphere", "srd", "lb/fluid"}) add("fix", name);
 }

@@ -140,10 +140,9 @@ static bool stands_before_drag(const Guest &guest, std::string &)
   return !stands_behind(guest, "stokes_dynamics");
 }
 
-/* It sees what the pair style adds, and what a fix has added before. */
-static bool scales_drag(const Guest &guest, std::string &)
+static bool stands_behind_drag(const Guest &guest, std::string &)
 {
-  return fixes_of(guest.lmp, "stokes_dynamics").empty() || stands_behind(guest, "stokes_dynamics");
+  return stands_behind(guest, "stokes_dynamics");
 }
 
 /* fix propel/self: without dipoles and quaternions only its mode velocity is left */
@@ -296,9 +295,12 @@ const std::vector<Neighbour> stokes_neighbours = {
      "has a drag or noise of its own, which would count twice: take it out; films are the keyword "
      "lubrication of the pair style, noise is the keyword temperature of fix "
      "stokes_dynamics/overdamped"},
-    {N::FIX, "hydro/vans sph/grains", 0, N::ERROR,
+    {N::FIX, "hydro/vans sph/grains lb/*", 0, N::ERROR,
      "drags spheres by a fluid of its own, and the fluid of pair_style stokes_dynamics drags them as "
      "well: take out one of the two, or give them different spheres"},
+    {N::FIX, "srd", 0, N::WARNING,
+     "has a fluid of its own: its big particles must be none of the spheres that the fluid of pair_style "
+     "stokes_dynamics drags; this cannot be checked", nullptr, N::ANYWHERE},
     {N::FIX, "dt/reset", OVERDAMPED | NOISE, N::ERROR,
      "makes steps of unequal length, whose averages are not those of time: take it out", nullptr,
      N::ANYWHERE},
@@ -346,9 +348,14 @@ const std::vector<Neighbour> stokes_neighbours = {
      "changes velocities to hold a temperature, as a drag or a push beside that of the fluid, so that spheres neither "
      "settle nor flow as the fluid has it: use fix nve/sphere; for noise fix stokes_dynamics/overdamped with "
      "temperature"},
-    {N::FIX, "damping/cundall", FORCE, N::WARNING,
-     "makes forces larger that oppose a velocity, and so also the drag of the fluid, unless it stands before fix "
-     "stokes_dynamics (add_force no) in the input", scales_drag},
+    {N::FIX, "damping/cundall", ADDED, N::WARNING,
+     "makes forces larger that oppose a velocity, and so also the drag of the fluid: use add_force no, and fix "
+     "stokes_dynamics behind it in the input"},
+    {N::FIX, "damping/cundall", APPLIED, N::WARNING,
+     "stands behind fix stokes_dynamics in the input and makes forces larger that oppose a velocity, and so also the "
+     "drag of the fluid: define it before", stands_behind_drag},
+    {N::COMMAND, "timestep", FORCE, N::ERROR,
+     "is {}, and drag would drive velocities apart on the way back: use a positive one", runs_back, N::ANYWHERE},
 
     // boxes that change
     {N::FIX, "deform*", OVERDAMPED | ADAPTING, N::ERROR,

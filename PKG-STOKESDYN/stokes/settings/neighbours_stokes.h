@@ -20,6 +20,7 @@ enum StokesFact : unsigned {
   UPRIGHT = 1 << 6,       // spheres do not turn
   APPLIED = 1 << 7,       // with fix stokes_dynamics
   MIDWAY = 1 << 8,        // with scheme midpoint
+  ADDED = 1 << 9,         // with add_force yes
 };
 
 inline unsigned fact(StokesFact which, bool holds) { return holds ? (unsigned) which : 0u; }

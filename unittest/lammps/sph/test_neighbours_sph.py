@@ -102,6 +102,7 @@ BESIDE = [
     (*LIST, of_a_group("neigh_modify include"), "neigh_modify has include ours, so that atoms 1 and 49 would not see"),
     ("COMMAND comm_modify", "0", of_a_group("comm_modify group"), "comm_modify has group ours, so that atoms 1 and 49"),
     ("COMMAND special_bonds", "0", bound, "special_bonds has a factor 0 and keeps atom 1 from those"),
+    ("COMMAND timestep", "0", told("timestep", "-0.002", "0.002"), "timestep is -0.002, and friction would drive"),
     ("COMMAND pair_coeff", "0", told("pair_coeff", "1 2 none", "1 3 none"),
      "pair_coeff leaves out types 1 and 2, so that atoms 1 and 49 would not see each other"),
 ]
@@ -113,8 +114,8 @@ DYNAMICS = [
 # of packages and versions that not every LAMMPS has
 ELSEWHERE = {("FIX rheo*", "0"): ("fix", "rheo"),
              # three dimensions: test_sph_grains.py
-             ("FIX hydro/vans viscous* langevin* drag", "GRAINS"): ("fix", "viscous"),
-             ("FIX gravity addforce efield spring* wall/gran*", "GRAINS"): ("fix", "gravity"),
+             ("FIX hydro/vans viscous* langevin* lb/*", "GRAINS"): ("fix", "viscous"),
+             ("FIX gravity addforce efield spring* drag wall/gran*", "GRAINS"): ("fix", "gravity"),
              ("FIX freeze setforce planeforce lineforce", "GRAINS"): ("fix", "setforce"),
              ("FIX rigid*", "TENSION"): ("fix", "rigid")}    # test_sph_tension.py
 
@@ -166,9 +167,10 @@ def test_every_row_has_a_case(tmp_path):
         # test_vans_coupling.py
         ("FIX wall/reflect*", "LANGEVIN", "WARNING"), ("FIX freeze setforce planeforce lineforce", "0", "WARNING"),
         ("FIX rigid* poems shake rattle", "DRAGS", "WARNING"),
-        ("FIX viscous langevin* gld gle gjf ffl ttm* nve/dotc/langevin electron/stopping* brownian*", "DRAGS",
+        ("FIX viscous langevin* gld gle gjf ffl ttm* nve/dotc/langevin electron/stopping* brownian* lb/*", "DRAGS",
          "WARNING"), ("FIX nvt* npt* nvk temp/* momentum*", "DRAGS", "WARNING"),
-        ("FIX damping/cundall", "DRAGS", "WARNING")]
+        ("FIX damping/cundall", "DRAGS", "WARNING"), ("FIX srd", "DRAGS", "WARNING"),
+        ("COMMAND timestep", "0", "ERROR")]
 
 
 def test_particles_at_rest_may_lose_their_own_kind(tmp_path):

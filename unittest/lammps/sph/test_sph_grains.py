@@ -424,6 +424,8 @@ BAD = {
                       "fix g of style sph/grains has the dynamic group some"),
     "drag of another fix": (dict(), "fix calm grains viscous 0.1",
                             "fix calm of style viscous drags grains that the water of SPH drags already"),
+    "a pull behind the grains": (dict(), "fix pull grains drag 4 4 4 0.1 1",
+                                 "fix pull of style drag stands behind fix sph/grains in the input"),
     "filter": (dict(), "fix filter water sph/density/corr shepard every 10", "does not go with fix sph/density/corr"),
     "drag": (dict(fix="drag stokes"), "", "keyword drag: 'stokes'"),
     "hindrance": (dict(fix="drag ergun hindrance 3"), "",
@@ -448,6 +450,14 @@ def test_bad_input_names_the_way_out(case):
         more = ""
     with pytest.raises(RuntimeError, match=message.replace("(", r"\(")):
         run(lmp, text + more + "\nrun 1")
+    lmp.close()
+
+
+def test_a_pull_to_a_point_is_no_drag():
+    """LAMMPS's fix drag before fix sph/grains is a force as others."""
+    lmp = start()
+    run(lmp, scene(size=(8, 8, 8), mu=0.5, c=5, dt=0.05, fix="", grains=ONE,
+                   before_fix="fix pull grains drag 4 4 4 0.1 1") + "\nrun 1")
     lmp.close()
 
 

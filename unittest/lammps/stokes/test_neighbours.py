@@ -12,6 +12,7 @@ OVERDAMPED = "fix move ours stokes_dynamics/overdamped"
 NOISY = f"{OVERDAMPED} temperature 1 4711"
 HALFWAY = f"{OVERDAMPED} scheme midpoint"
 INERTIA = "fix drag ours stokes_dynamics\nfix move ours nve/sphere"
+UNAPPLIED = INERTIA.replace("dynamics", "dynamics apply no", 1)
 WORDS = "cut_off_distance inf visc 1"
 TURN = f"{WORDS} rotation yes"
 ELLIPSOID, ROUND = "hybrid sphere ellipsoid", "set group all shape 2 2 2 quat 0 0 1 0"
@@ -110,9 +111,9 @@ CASES = [
      "pair_style lubricate has a drag or noise"),
     ("PAIR lubricate* brownian*", "OVERDAMPED", paired("brownian 1 1 1 2.01 2.5 1 77", "IJ NAME", NOISY),
      "pair_style brownian has a drag or noise"),
-    ("FIX hydro/vans sph/grains", "0", fixed(f"fix b GROUP {VANS}", INERTIA),
+    ("FIX hydro/vans sph/grains lb/*", "0", fixed(f"fix b GROUP {VANS}", INERTIA),
      "fix b of style hydro/vans drags spheres by a fluid of its own"),
-    ("FIX hydro/vans sph/grains", "0", fixed(f"fix b GROUP {VANS}"), "fix b of style hydro/vans drags spheres"),
+    ("FIX hydro/vans sph/grains lb/*", "0", fixed(f"fix b GROUP {VANS}"), "fix b of style hydro/vans drags spheres"),
     ("FIX shake rattle", "OVERDAMPED", fixed("fix b GROUP shake 1e-4 20 0 b 1", before=BONDS),
      "fix b of style shake finds the forces of its bonds from masses"),
     (TURNLESS, "FORCE | TURNING", fixed("fix b GROUP nve", "fix drag ours stokes_dynamics", words=TURN),
@@ -149,9 +150,16 @@ CASES = [
      "fix b of style nvt/sphere changes velocities to hold a temperature"),
     (THERMOSTATS, "FORCE", fixed("fix b GROUP temp/rescale 1 1 1 0.1 1", INERTIA, before="velocity all create 1 77"),
      "fix b of style temp/rescale changes velocities to hold a temperature"),
-    ("FIX damping/cundall", "FORCE", fixed("fix b GROUP damping/cundall 0.1 0.1", "fix move ours nve/sphere",
+    ("FIX damping/cundall", "ADDED", fixed("fix b GROUP damping/cundall 0.1 0.1", "fix move ours nve/sphere",
                                            words=f"{WORDS} add_force yes", before=TODAY),
      "fix b of style damping/cundall makes forces larger that oppose"),
+    ("FIX damping/cundall", "ADDED", fixed("fix b GROUP damping/cundall 0.1 0.1", UNAPPLIED,
+                                           words=f"{WORDS} add_force yes", before=TODAY),
+     "fix b of style damping/cundall makes forces larger that oppose"),
+    ("FIX damping/cundall", "APPLIED", fixed(f"{INERTIA}\nfix b GROUP damping/cundall 0.1 0.1", "", before=TODAY),
+     "fix b of style damping/cundall stands behind fix stokes_dynamics in the input"),
+    ("FIX hydro/vans sph/grains lb/*", "0", fixed("fix b GROUP lb/fluid", INERTIA, before=TODAY),
+     "fix b of style lb/fluid drags spheres by a fluid of its own"),
     ("FIX addtorque", "TURNING", lambda ours: fixed("group one id %d\nfix b one addtorque 0 0 1" % (1 if ours else 4),
                                                     words=TURN)(ours),
      "fix b of style addtorque pushes the atoms of its group"),
@@ -196,6 +204,8 @@ CASES = [
 ]
 # those that act on whatever atoms
 ANYWHERE = [
+    ("FIX srd", "0", fixed("fix b GROUP srd", INERTIA, before=TODAY), "fix b of style srd has a fluid of its own"),
+    ("COMMAND timestep", "FORCE", fixed("timestep -1e-3", INERTIA), "timestep is -0.001, and drag would drive"),
     ("FIX dt/reset", "OVERDAMPED | NOISE", fixed("fix b GROUP dt/reset 10 NULL 0.1 0.1", NOISY),
      "fix b of style dt/reset makes steps"),
     ("FIX deform*", "OVERDAMPED | ADAPTING", fixed("fix b GROUP deform 1 z erate 0.1 units box",

@@ -298,13 +298,14 @@ def test_water_that_moves_on_alone_is_not_too_far_apart(tmp_path):
     ("setforce 0 0 0", "stands before this fix in the input, whose forces then move what it holds", True, False),
     ("rigid single", "stands before this fix in the input, so that it reads forces before", True, False),
     ("viscous 1e-9", "adds a drag to grains that the water drags as well", True, True),
+    ("lb/fluid", "adds a drag to grains that the water drags as well", True, True),
     ("temp/berendsen 1 1 1", "changes velocities of grains, of which the water feels nothing", True, True),
     ("damping/cundall 0.1 0.1", "stands behind this fix in the input and makes forces larger", False, True)])
 def test_what_the_stream_does_not_go_with_is_told(tmp_path, style, says, before, behind):
     """In both orders of the input, and nothing where the fix has no grains."""
     script = bed_of_specks(1e-4, 10).replace("run 1", "thermo_style custom step\nrun 0")
     line = f"fix other all {style}\n"
-    if "cundall" in style:
+    if style.split()[0] in ("damping/cundall", "lb/fluid"):
         line = f"plugin load {there(STYLES_OF_TODAY)}\n" + line
     for at, told in ((script.index("fix h"), before), (script.index("run 0"), behind)):
         done = run_lmp(tmp_path, script[:at] + line + script[at:])
@@ -312,6 +313,34 @@ def test_what_the_stream_does_not_go_with_is_told(tmp_path, style, says, before,
         assert (f"fix other of style {style.split()[0]} {says}" in " ".join(done.stdout.split())) == told
     none = run_lmp(tmp_path, script[:at] + "group none empty\n" + line.replace(" all ", " none ") + script[at:])
     assert style.startswith("rigid") or (none.returncode == 0 and says not in none.stdout)
+
+
+@pytest.mark.parametrize("lines, error, says", [
+    (f"plugin load {STYLES_OF_TODAY}\nfix b all srd", False, "fix b of style srd has a fluid of its own"),
+    ("timestep -1e-5", True, "timestep is -1e-05, and neither drag nor the friction of the water have a way back")])
+def test_a_second_fluid_is_told_and_a_way_back_refused(tmp_path, lines, error, says):
+    there(STYLES_OF_TODAY)
+    done = run_lmp(tmp_path, bed_of_specks(1e-4, 10).replace("run 1", f"{lines}\nrun 0"))
+    assert (done.returncode != 0) == error and says in " ".join(done.stdout.split())
+
+
+RISES = "keyword gravity: no fix gives atom 1 a weight"
+
+
+@pytest.mark.parametrize("lines, told", [
+    ("fix m all nve/sphere", True), ("fix m all rigid single", True), ("", False),
+    ("fix g all gravity 9.8 vector 0.5 0 -9.8\nfix m all nve/sphere", False),
+    ("fix w all addforce 0 0 -1e-9\nfix m all nve/sphere", False),
+    ("fix s all setforce 0 0 0\nfix m all nve/sphere", False), ("fix m all move linear 0 0 0", False),
+    ("group one id 1\nfix g one gravity 9.8 vector 0 0 -1\ngroup two id 2\nfix m one nve/sphere", False),
+    ("group one id 2\nfix g one gravity 9.8 vector 0 0 -1\nfix m all nve/sphere", True)])
+def test_grains_without_a_weight_are_told(tmp_path, lines, told):
+    """They rose without a word. Once, and not where nobody moves them, or where something may be their weight."""
+    script = bed_of_specks(1e-4, 10).replace("timestep 1e-05", "timestep 1e-09").replace(
+        "run 1", f"thermo_style custom step\n{lines}\nrun 1\nrun 1")
+    done = run_lmp(tmp_path, script)
+    assert done.returncode == 0, done.stdout[-1000:]
+    assert " ".join(done.stdout.split()).count(RISES) == told
 
 
 @pytest.mark.parametrize("keyword, apart, ranks, told", [("", 0.7, 1, True), ("", 0.7, 2, True), ("", 0.97, 1, False),
