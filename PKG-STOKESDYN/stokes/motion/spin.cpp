@@ -18,13 +18,13 @@ void Spin::read(Keywords &in)
 {
   double unused;
   whom.name = in.value("GROUP").word();
-  for (double &component : omega) component = in.number();
-  if (in.more() && is_number(in.peek(), unused)) most = in.positive();
-  std::copy_n(omega, 3, axis);
-  if (most > 0.0 && sd_dot(omega, omega) == 0.0)
+  for (double &component : field.omega) component = in.number();
+  if (in.more() && is_number(in.peek(), unused)) field.most = in.positive();
+  std::copy_n(field.omega, 3, field.axis);
+  if (field.most > 0.0 && sd_dot(field.omega, field.omega) == 0.0)
     in.refuse("a largest torque needs an axis, and the angular velocity is 0: use held, or no largest "
               "torque");
-  if (sd_dot(omega, omega) > 0.0) sd_normalize(axis);
+  if (sd_dot(field.omega, field.omega) > 0.0) sd_normalize(field.axis);
 }
 
 void Spin::init(const Hydrodynamics &hydro, int held_bit)
@@ -38,7 +38,7 @@ void Spin::init(const Hydrodynamics &hydro, int held_bit)
                  "without torques do not spin");
   if (hydro.settings.rigid.each_alone())
     keyword.fail("it is for spheres that feel each other: use clumps_only no" + pair);
-  if (domain->dimension == 2 && (omega[0] != 0.0 || omega[1] != 0.0))
+  if (domain->dimension == 2 && (field.omega[0] != 0.0 || field.omega[1] != 0.0))
     keyword.fail("in two dimensions spheres spin about z alone: wx and wy must be 0");
   const bool clumps = hydro.settings.rigid.on;
   if (const tagint bound = first_atom(lmp, [&](int i) {
@@ -57,27 +57,20 @@ void Spin::init(const Hydrodynamics &hydro, int held_bit)
 bool Spin::turns(int i, double W[3]) const
 {
   if (!(atom->mask[i] & whom.bit) || sign(i) != 0.0) return false;
-  std::copy_n(omega, 3, W);
+  std::copy_n(field.omega, 3, W);
   return true;
 }
 
 void Spin::push(int i, double *torque) const
 {
   if (!(atom->mask[i] & whom.bit)) return;
-  for (int d = 0; d < 3; d++) torque[d] += sign(i) * most * axis[d];
+  for (int d = 0; d < 3; d++) torque[d] += sign(i) * field.most * field.axis[d];
 }
 
-/* An overloaded sphere that has caught up with the field is held again. */
 void Spin::note_found(int i, const double *W, const double *by_fluid, const double *torque)
 {
-  if (!(atom->mask[i] & whom.bit) || most == 0.0) return;
-  const double now = sign(i);
-  double next = now, needed[3];
-  for (int d = 0; d < 3; d++) needed[d] = -by_fluid[d] - torque[d];
-  if (now == 0.0 && sd_dot(needed, needed) > most * most)
-    next = sd_dot(needed, axis) < 0.0 ? -1.0 : 1.0;
-  else if (now * (sd_dot(W, axis) - sd_dot(omega, axis)) >= 0.0)
-    next = 0.0;
+  if (!(atom->mask[i] & whom.bit) || field.most == 0.0) return;
+  const double now = sign(i), next = sd_spin_overload(&field, now, W, by_fluid, torque);
   if (next == 0.0 && now == 0.0)
     overloaded.erase(i);
   else
@@ -86,7 +79,7 @@ void Spin::note_found(int i, const double *W, const double *by_fluid, const doub
 
 void Spin::advance()
 {
-  for (int i = 0; i < atom->nlocal && most > 0.0; i++)
+  for (int i = 0; i < atom->nlocal && field.most > 0.0; i++)
     if (overloaded.has(i)) overloaded.row(i)[0] = overloaded[i][1];
 }
 

@@ -13,6 +13,8 @@
 #include "pointers.h"
 #include "rows_fix.h"
 
+#include "sd_spin.h"
+
 namespace StokesDyn {
 
 class Hydrodynamics;
@@ -46,8 +48,7 @@ class Spin : protected LAMMPS_NS::Pointers {
  private:
   const Voice voice;
   KeywordGroup whom;
-  /* most: 0, no limit */
-  double omega[3] = {0.0}, axis[3] = {0.0}, most = 0.0;
+  sd_spin_field field = {};
 
   double sign(int i) const { return overloaded[i][0]; }
 };
