@@ -1,7 +1,6 @@
 #include "fix_hydro_vans.h"
 
 #include "ranks.h"
-#include "sd_constants.h"
 
 #include "atom.h"
 #include "region.h"
@@ -96,12 +95,11 @@ void FixHydroVans::average()
                        text(atom->radius[odd]) +
                        ", which is no size class; give all radii with class_radii");
   double *mine = &sums[total], *means = &all[total];
+  mine[VOLUME] = sd_vans_volume_of_grains(&grains);
   for (int i = 0; i < grains.n; i++) {
     if (!take[i]) continue;
-    const double a = atom->radius[i];
     mine[COUNT] += 1.0;
-    mine[RADIUS] += a;
-    mine[VOLUME] += (grains.weight ? weight[i] : 1.0) * 4.0 / 3.0 * SD_PI * a * a * a;
+    mine[RADIUS] += atom->radius[i];
     mine[MASS] += atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
   }
   MPI_Allreduce(sums.data(), all.data(), (int) sums.size(), MPI_DOUBLE, MPI_SUM, world);
@@ -184,9 +182,9 @@ void FixHydroVans::feel_pressure()
  * the force of that step. */
 void FixHydroVans::press(bool stepping, bool repeat, const Sums &before)
 {
-  for (int i = 0; set.law.dpdx != 0.0 && i < atom->nlocal; i++) {
-    const double a = atom->radius[i], share = set.overlap_once ? weight[i] : 1.0;
-    if (take[i]) local.pressure -= share * 4.0 / 3.0 * SD_PI * a * a * a * set.law.dpdx;
+  if (set.law.dpdx != 0.0) {
+    const sd_vans_grains all = grains();
+    local.pressure -= sd_vans_volume_of_grains(&all) * set.law.dpdx;
   }
   if (repeat) local.pressure = before.pressure;
   local.pressed = before.pressed;

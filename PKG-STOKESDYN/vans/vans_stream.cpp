@@ -276,12 +276,9 @@ double VansStream::give_back(double area, double T, const Given &given, std::vec
   return sd_vans_give_back(&wet, ncell(), fluid.rho * area, T, back.data(), outstanding.data(), source.data());
 }
 
-/* What passed in a solve, into the ledger; without the part of `rest`, which is no momentum of grains */
-void VansStream::keep_books(double area, double T, const Given &given, const std::vector<double> &rest,
-                            sd_vans_books &books)
+/* What passed in a solve, into the ledger */
+void VansStream::keep_books(double area, double T, const Given &given, const sd_vans_books &books)
 {
-  for (size_t n = 0; n + 1 < std::min(rest.size(), (size_t) wet.ncell); n++)
-    books.moved[n] -= fluid.rho * sd_vans_height(&wet, (int) n) * T * rest[n];
   double &taken = given.back.empty() ? ledger.others : ledger.transit;
   for (int n = 0; n < ncell(); n++) taken += area * books.moved[n];
   if (!given.back.empty()) {
@@ -322,7 +319,8 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
   drive = books.drive;
   mean_drive = books.driving / (fluid.rho * T * sd_vans_volume(&wet, phi()));
   if (fluid.held) fluid.gx = drive;    // for what else asks how strong the stream is
-  keep_books(area, T, given, rest, books);
+  if (!rest.empty()) sd_vans_take_out_rest(&wet, fluid.rho, T, rest.data(), &books);
+  keep_books(area, T, given, books);
   ledger.transit -= given.all + returned;
   tell_bottom();
 }

@@ -141,8 +141,7 @@ class VansStream {
   void mixing_length();
   void exchange(double T, double dt, bool held, std::vector<double> &rest);
   double give_back(double area, double T, const Given &given, std::vector<double> &source);
-  void keep_books(double area, double T, const Given &given, const std::vector<double> &rest,
-                  sd_vans_books &books);
+  void keep_books(double area, double T, const Given &given, const sd_vans_books &books);
   void tell_limits(double T, double dt, bool held, const double cut[2]);
   void tell_bottom();
   [[noreturn]] void no_average(int n, double area);

@@ -32,6 +32,12 @@ double sd_vans_give_back(const sd_vans_mesh *mesh, int all, double rho_area, dou
   return returned;
 }
 
+void sd_vans_take_out_rest(const sd_vans_mesh *mesh, double rho, double T, const double *rest,
+                           sd_vans_books *books)
+{
+  for (int n = 0; n < mesh->ncell - 1; n++) books->moved[n] -= rho * sd_vans_height(mesh, n) * T * rest[n];
+}
+
 void sd_vans_hand_over(const sd_vans_mesh *mesh, const double *phi, double T,
                        const sd_vans_books *books, double *shear, double *foreseen)
 {

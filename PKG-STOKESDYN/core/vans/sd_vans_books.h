@@ -51,6 +51,11 @@ static inline double sd_vans_account_rest(const sd_vans_account *account, double
 double sd_vans_give_back(const sd_vans_mesh *mesh, int all, double rho_area, double T, double *back,
                          double *outstanding, double *source);
 
+/* With b and rest [N] of sd_vans_exchange_by_law a solve over the time T of water of density rho books all of
+ * b (U - v) as given to the grains. The part of `rest` is none of theirs, and goes out of `moved`. */
+void sd_vans_take_out_rest(const sd_vans_mesh *mesh, double rho, double T, const double *rest,
+                           sd_vans_books *books);
+
 /* What the solve took from the water, per volume of grains: shear [N] as a force, foreseen [N] as
  * an impulse. */
 void sd_vans_hand_over(const sd_vans_mesh *mesh, const double *phi, double T,

@@ -46,6 +46,15 @@ static double lift_force(const sd_vans_ambient *stream, int p, double a, double 
   return 0.5 * law->rho * SD_PI * a * a * law->lift * (over * over - under * under);
 }
 
+double sd_vans_volume_of_grains(const sd_vans_grains *grains)
+{
+  double sum = 0.0;
+  for (int i = 0; i < grains->n; i++)
+    if (!grains->take || grains->take[i])
+      sum += (grains->weight ? grains->weight[i] : 1.0) * sd_sphere_volume(grains->a[i]);
+  return sum;
+}
+
 int sd_vans_forces(const sd_vans_ambient *stream, const sd_vans_grains *grains, double *F, double *drag_x)
 {
   const sd_vans_mesh *mesh = stream->mesh;

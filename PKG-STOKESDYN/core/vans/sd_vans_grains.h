@@ -49,6 +49,9 @@ typedef struct {
   const double *acceleration;
 } sd_vans_grains;
 
+/* Volume of the grains that take part, of each its share */
+double sd_vans_volume_of_grains(const sd_vans_grains *grains);
+
 /* The slices that a sphere reaches, from the first one on, >= 0, none with count 0; V[k] is its volume in
  * slice first + k */
 typedef struct {

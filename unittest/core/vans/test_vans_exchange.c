@@ -112,6 +112,21 @@ static void momentum_goes_back_in_tenths(void **state)
   for (int n = 4; n < ALL; n++) assert_true(outstanding[n] == 0.0);
 }
 
+/* What b (U - v) has too much at the start of a solve goes out of the books in the slices that have water. */
+static void what_no_grain_gets_goes_out_of_the_books(void **state)
+{
+  (void) state;
+  enum { N = 4 };
+  const double edge[N + 1] = {0, 0.1, 0.3, 0.6, 1.0}, rest[N] = {2e-3, -1e-3, 0.0, 7.0}, rho = 1030, T = 0.25;
+  const sd_vans_mesh mesh = {N, 0.4, 0, edge};
+  double moved[N] = {0.3, 0.2, 0.1, 0.0}, shear[N] = {0.01, 0.02, 0.03, 0.0};
+  sd_vans_books books = {moved, shear, 1, 2, 3, 4, 5};
+  sd_vans_take_out_rest(&mesh, rho, T, rest, &books);
+  CHECK_NEAR(moved[0], 0.3 - rho * 0.1 * T * 2e-3, 1e-15);
+  CHECK_NEAR(moved[1], 0.2 + rho * 0.2 * T * 1e-3, 1e-15);
+  assert_true(moved[2] == 0.1 && moved[3] == 0.0 && shear[1] == 0.02 && books.driving == 1);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -120,6 +135,7 @@ int main(void)
       cmocka_unit_test(rate_of_drag_is_that_of_its_grains),
       cmocka_unit_test(exchange_by_law_takes_the_drag_as_it_is),
       cmocka_unit_test(momentum_goes_back_in_tenths),
+      cmocka_unit_test(what_no_grain_gets_goes_out_of_the_books),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -362,6 +362,25 @@ static void overlaps_count_once(void **state)
   assert_true(fabs(sum / (inside * step * step * step) - 1) < 1e-3);
 }
 
+/* A pressure gradient pushes each grain by its volume, and that of all by that of all of them. */
+static void grains_have_the_volume_that_a_pressure_pushes(void **state)
+{
+  (void) state;
+  enum { N = 3 };
+  const double edge[N + 1] = {0, 1, 2, 3}, U[N + 1] = {0}, hindrance[N] = {1, 1, 1}, dpdx = -0.7;
+  const double x[9] = {0, 0, 0.5, 0, 0, 1.5, 0, 0, 2.5}, v[9] = {0}, a[3] = {0.3, 0.2, 0.4}, weight[3] = {1, 0.6, 0.9};
+  const unsigned char take[3] = {1, 1, 0};
+  const sd_vans_mesh mesh = {N, 0, 1, edge};
+  const sd_vans_force_law law = {.rho = 1030, .eta = 2e-3, .dpdx = dpdx};
+  const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
+  const sd_vans_grains grains = {3, x, v, a, NULL, weight, take, NULL};
+  double F[9];
+  sd_vans_forces(&stream, &grains, F, NULL);
+  const double V = 4.0 / 3.0 * SD_PI * (0.027 + 0.6 * 0.008);
+  CHECK_NEAR(sd_vans_volume_of_grains(&grains), V, 1e-15);
+  CHECK_NEAR(F[0] + F[3], -V * dpdx, 1e-15);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -381,6 +400,7 @@ int main(void)
       cmocka_unit_test(fluctuations_depend_on_their_keys_alone),
       cmocka_unit_test(eddies_live_as_long_as_the_length_over_the_velocity),
       cmocka_unit_test(overlaps_count_once),
+      cmocka_unit_test(grains_have_the_volume_that_a_pressure_pushes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
