@@ -92,7 +92,7 @@ double least_lone_mobility(const Scene &scene)
     const double a = spheres.a[k], *x = spheres.x + 3 * (size_t) k;
     const sd_wall &wall = boundary.nearest(x);
     double image[9];
-    sd_wall_block(&wall, 3, x, a, x, a, 1.0, image);
+    sd_wall_block(&wall, 3, x, a, x, a, image);
     least = std::min(least, 1.0 + 6.0 * SD_PI * a * image[4 * wall.axis]);
   }
   return least;

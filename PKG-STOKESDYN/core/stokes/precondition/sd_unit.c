@@ -31,14 +31,14 @@ static inline void put_cross(double c, const double h[3], double *B)
   }
 }
 
-/* What the wall adds to the block of spheres at xi and xj */
-static void un_add_image(const sd_law *law, const double xi[3], double ai, const double xj[3],
+/* What a wall adds to the block of spheres at xi and xj */
+static void un_add_image(const sd_wall *wall, const double xi[3], double ai, const double xj[3],
                          double aj, double taper, int width, double B[36])
 {
   const double root_i[2] = {sqrt(6.0 * SD_PI * ai), sqrt(8.0 * SD_PI * ai) * ai};
   const double root_j[2] = {sqrt(6.0 * SD_PI * aj), sqrt(8.0 * SD_PI * aj) * aj};
   double M[36];
-  sd_wall_block(&law->wall, width, xi, ai, xj, aj, 1.0, M);
+  sd_wall_block(wall, width, xi, ai, xj, aj, M);
   for (int p = 0; p < width; p++)
     for (int q = 0; q < width; q++)
       B[p + 6 * q] += taper * root_i[p / 3] * root_j[q / 3] * M[width * p + q];
@@ -71,7 +71,7 @@ static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int
     put_cross(half_root_3 * c * aj * sd_rpy_radial_wf(R, aj, ai), h, B + 6 * 3);
     put_cross(half_root_3 * c * ai * sd_rpy_radial_wf(R, ai, aj), h, B + 3);
   }
-  if (law->wall.sign) un_add_image(law, xi, ai, xj, aj, taper, width, B);
+  if (law->wall.sign) un_add_image(&law->wall, xi, ai, xj, aj, taper, width, B);
 }
 
 /* That of a sphere with itself, and a little on the diagonal */
@@ -83,7 +83,7 @@ static inline void un_own_block(const sd_law *law, const sd_spheres *s, int i, i
   for (int p = 0; p < width; p++) B[7 * p] = 1.0 + extra;
   if (!law->wall.sign) return;
   sd_wall_keep_off(&law->wall, s->x + 3 * (long) i, s->a[i], x);
-  un_add_image(law, x, s->a[i], x, s->a[i], 1.0, width, B);
+  un_add_image(&law->wall, x, s->a[i], x, s->a[i], 1.0, width, B);
 }
 
 /* Its lower triangle, with 1 + extra on the diagonal; into one of A, A_single. width: that of c, by which

@@ -75,9 +75,9 @@ void sd_wall_pair_add(const sd_wall_pair *w, int width, const double *FT, double
 }
 
 void sd_wall_block(const sd_wall *wall, int width, const double xi[3], double a, const double xj[3],
-                   double b, double eta, double *M)
+                   double b, double *M)
 {
-  const double unit = 1.0 / (8.0 * SD_PI * eta);
+  const double unit = 1.0 / (8.0 * SD_PI);
   double at_i[3], at_j[3];
   int axis[3];
   sd_wall_axes(wall, axis);
@@ -112,7 +112,7 @@ void sd_wall_matrix(const sd_wall *wall, int m, int width, const double *x, cons
         sd_tensor_grand(r, a[i], a[j], 1.0, block);
       else
         sd_tensor_uf(SD_TENSOR_RPY, r, a[i], a[j], 1.0, block);
-      if (wall->sign) sd_wall_block(wall, width, xi, a[i], xj, a[j], 1.0, image);
+      if (wall->sign) sd_wall_block(wall, width, xi, a[i], xj, a[j], image);
       for (size_t p = 0; p < w; p++)
         for (size_t q = 0; q < w; q++)
           M[(w * i + p) * N + w * j + q] = M[(w * j + q) * N + w * i + p] =

@@ -63,10 +63,10 @@ typedef struct {
 sd_wall_pair sd_wall_pair_of(const double xi[3], double a, const double xj[3], double b);
 /* UW [width] += image part, times 8 pi eta, for FT [width] of j: width 3 or 6 */
 void sd_wall_pair_add(const sd_wall_pair *w, int width, const double *FT, double *UW);
-/* The block of the image part in axes of space, row-major: rows U_i (W_i), columns F_j (T_j); width
- * 3 or 6. xi, xj in axes of space */
+/* The block of the image part in a fluid of viscosity 1, in axes of space, row-major: rows U_i (W_i), columns
+ * F_j (T_j); width 3 or 6. xi, xj in axes of space */
 void sd_wall_block(const sd_wall *wall, int width, const double xi[3], double a, const double xj[3],
-                   double b, double eta, double *M);
+                   double b, double *M);
 
 /* M [(width m)^2], row-major: RPY between m points x [3m] of radii a [m] in a fluid of viscosity 1,
  * with torques for width 6. wall: with their images in it, in axes of space; NULL: there is none */

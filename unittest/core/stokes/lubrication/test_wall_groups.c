@@ -23,7 +23,7 @@ static void resistance_of_model(const double *x, const double *a, double *R)
       double r[3], apart[36], image[36];
       sd_minus(x + 3 * i, x + 3 * j, r);
       sd_tensor_grand(r, a[i], a[j], 1.0, apart);
-      sd_wall_block(&ground, 6, x + 3 * i, a[i], x + 3 * j, a[j], 1.0, image);
+      sd_wall_block(&ground, 6, x + 3 * i, a[i], x + 3 * j, a[j], image);
       for (int e = 0; e < 36; e++) M[(6 * i + e / 6) * SIZE + 6 * j + e % 6] = apart[e] + image[e];
     }
   for (int k = 0; k < SIZE; k++) R[k * (SIZE + 1)] = 1.0;

@@ -228,8 +228,8 @@ static inline void expected(const climber *row, const cast *s, int i, int j, dou
   }
   pair_tensor(r, s->a[i], s->a[j], eta, M);
   const sd_wall wall = wall_of(row);
-  if (row->wall) sd_wall_block(&wall, 3, s->x + 3 * i, s->a[i], s->x + 3 * j, s->a[j], eta, B);
-  for (int e = 0; e < 9 && row->wall; e++) M[e] += B[e];
+  if (row->wall) sd_wall_block(&wall, 3, s->x + 3 * i, s->a[i], s->x + 3 * j, s->a[j], B);
+  for (int e = 0; e < 9 && row->wall; e++) M[e] += B[e] / eta;
   const double q = R / row->cut, taper = row->taper ? pow(1.0 - q, 4) * (1.0 + 4.0 * q) : 1.0;
   for (int e = 0; e < 9; e++) M[e] *= row->cut > 0.0 && q >= 1.0 ? 0.0 : taper;
 }

@@ -123,8 +123,8 @@ static inline void floor_tensor(const pair_above *p, double eta, double edge, do
       if (part < 1e-15) continue;
       if (p->home || k != 0 || l != 0) pair_tensor(r, a, b, eta, bare);
       else bare[0] = bare[4] = bare[8] = 1.0 / (6.0 * SD_PI * eta * a);
-      sd_wall_block(&ground, 3, xi, a, x, b, eta, image);
-      for (int e = 0; e < 9; e++) M[e] += part * (bare[e] + image[e]);
+      sd_wall_block(&ground, 3, xi, a, x, b, image);
+      for (int e = 0; e < 9; e++) M[e] += part * (bare[e] + image[e] / eta);
     }
 }
 

@@ -25,7 +25,7 @@ static blobs *above_wall(int points, int one_body, int n, const double *x, const
   sd_wall_matrix(NULL, s->N / 3, 3, s->at, s->b, s->M);
   for (int i = 0; i < s->N / 3; i++)
     for (int j = 0; j < s->N / 3; j++) {
-      sd_wall_block(&ground, 3, s->at + 3 * i, s->b[i], s->at + 3 * j, s->b[j], 1.0, block);
+      sd_wall_block(&ground, 3, s->at + 3 * i, s->b[i], s->at + 3 * j, s->b[j], block);
       for (int e = 0; e < 9; e++) s->M[(3 * i + e / 3) * s->N + 3 * j + e % 3] += block[e];
     }
   blobs_add_one_body(s);

@@ -95,11 +95,11 @@ static void by_blocks(const sd_law *law, const scene *s, int width, const double
       sd_minus(x[0], x[1], r);
       const double eta = 1.0 / (s->w[i] * s->w[j]), t = sd_taper_factor(law, sqrt(sd_dot(r, r)));
       sd_tensor_grand(r, s->a[i], s->a[j], eta, M);
-      sd_wall_block(wall, 6, s->x + 3 * i, s->a[i], s->x + 3 * j, s->a[j], eta, image);
+      sd_wall_block(wall, 6, s->x + 3 * i, s->a[i], s->x + 3 * j, s->a[j], image);
       for (int p = 0; p < width; p++)
         for (int q = 0; q < width; q++)
           u[width * i + p] +=
-              t * ((i == j ? 0.0 : M[6 * p + q]) + image[6 * p + q]) * F[width * j + q];
+              t * ((i == j ? 0.0 : M[6 * p + q]) + image[6 * p + q] / eta) * F[width * j + q];
     }
 }
 

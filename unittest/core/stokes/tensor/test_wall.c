@@ -17,7 +17,7 @@ static void whole_block(const sd_wall *wall, const double *xi, double a, const d
   at_j[wall->axis] = wall->at + wall->sign * fmax(sd_wall_height(wall, xj), b);
   for (int d = 0; d < 3; d++) r[d] = at_i[d] - at_j[d];
   sd_tensor_grand(r, a, b, 1.0, M);
-  sd_wall_block(wall, 6, xi, a, xj, b, 1.0, image);
+  sd_wall_block(wall, 6, xi, a, xj, b, image);
   for (int e = 0; e < 36; e++) M[e] += image[e];
 }
 
@@ -121,8 +121,8 @@ static void images_are_reciprocal(void **state)
     for (int k = 0; k < 6; k++) x[k / 3][k % 3] = uniform(&seed, -5, 5);
     for (int k = 0; k < 2; k++)
       x[k][wall.axis] = wall.at + wall.sign * (k ? b : a) * uniform(&seed, 0.6, 4.0);
-    sd_wall_block(&wall, 6, x[0], a, x[1], b, 1.7, M[0]);
-    sd_wall_block(&wall, 6, x[1], b, x[0], a, 1.7, M[1]);
+    sd_wall_block(&wall, 6, x[0], a, x[1], b, M[0]);
+    sd_wall_block(&wall, 6, x[1], b, x[0], a, M[1]);
     for (int p = 0; p < 6; p++)
       for (int q = 0; q < 6; q++) {
         const double scale = fmax(fabs(M[0][7 * p]), fabs(M[0][7 * q])) + 1e-3;
@@ -137,7 +137,7 @@ static void six_sides_are_one_scene_turned(void **state)
   (void) state;
   const double at[2][3] = {{0.4, -0.3, 1.3}, {-1.1, 0.8, 0.9}}, a = 1.0, b = 0.6;
   double M[36];
-  sd_wall_block(&floor_at_0, 6, at[0], a, at[1], b, 0.8, M);
+  sd_wall_block(&floor_at_0, 6, at[0], a, at[1], b, M);
   for (int side = 0; side < 6; side++) {
     const sd_wall wall = {side / 2, side % 2 ? -1 : 1, 2.5};
     int axis[3];
@@ -146,7 +146,7 @@ static void six_sides_are_one_scene_turned(void **state)
     for (int k = 0; k < 2; k++)
       for (int d = 0; d < 3; d++)
         x[k][axis[d]] = d < 2 ? at[k][d] : wall.at + wall.sign * at[k][d];
-    sd_wall_block(&wall, 6, x[0], a, x[1], b, 0.8, turned);
+    sd_wall_block(&wall, 6, x[0], a, x[1], b, turned);
     for (int p = 0; p < 6; p++)
       for (int q = 0; q < 6; q++) {
         const double sign = (p % 3 == 2) != (q % 3 == 2) ? wall.sign : 1.0;
