@@ -130,17 +130,20 @@ def draw(frames, L, v, z, path):
     open_axes()
     figure = plt.figure(figsize=(11, 5.8), layout="constrained")
     grid = figure.add_gridspec(2, 12)
+    top, colours = [], plt.matplotlib.cm.ScalarMappable(plt.matplotlib.colors.Normalize(1, 3.5), "viridis")
     for k in range(4):
         t, centre, x, _, _ = frames[(len(frames) - 1) * k // 3]
         panel = figure.add_subplot(grid[0, 3 * k:3 * k + 3])
         order = np.argsort(x[:, 2])
         circles = [plt.Circle(p[:2] - centre, A) for p in x[order]]
         panel.add_collection(plt.matplotlib.collections.PatchCollection(
-            circles, facecolors=plt.cm.viridis(np.clip((x[order, 2] - A) / (2.5 * A), 0, 1)), lw=0))
+            circles, facecolors=colours.to_rgba(x[order, 2] / A), lw=0))
         panel.set(aspect="equal", title=f"{t:.1f} s", xticks=[], yticks=[], xlim=(-0.55 * L, 0.55 * L),
                   ylim=(-0.55 * L, 0.55 * L))
         for side in ("left", "bottom"):
             panel.spines[side].set_visible(False)
+        top.append(panel)
+    figure.colorbar(colours, ax=top, extend="max", shrink=0.8, pad=0.01, label="height over radius")
     speed, height = figure.add_subplot(grid[1, :6]), figure.add_subplot(grid[1, 6:])
     bins, upper = np.arange(np.floor(v.min()), v.max() + 2, 2.0), z > 2 * A
     speed.hist([v[~upper], v[upper]], bins=bins, stacked=True, color=["C0", "C1"],

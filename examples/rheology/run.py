@@ -179,8 +179,8 @@ def draw(brownian_rows, larger_rows, grain_rows, path):
              title="Brownian hard spheres")
     left.set_yticks((3, 4, 5, 7, 10, 15), (3, 4, 5, 7, 10, 15))
     middle.axhline(0, color="0.6", lw=0.8)
-    middle.set(xscale="log", xlabel="Peclet number", ylabel="over viscosity and rate of shear", ylim=(-4, 4),
-               title="their normal stress differences")
+    middle.set(xscale="log", xlabel="Peclet number", ylabel="N / (viscosity of the fluid x rate of shear)",
+               ylim=(-4, 4), title="their normal stress differences")
     phi = np.linspace(0.35, 0.52, 50)
     right.plot(phi, boyer(phi), "k--", lw=1.2, label="experiments: Boyer et al. 2011")
     for mu, mark, colour in zip(FRICTIONS, "os", ("C0", "C1")):
