@@ -27,6 +27,7 @@ void Lubrication::check(sd_status status) const
 void Lubrication::provide(double largest, double smallest, bool halves)
 {
   const double ratio = largest / smallest;
+  const std::array<int, 3> kind = {shells.points, shells.one_body, halves};
   if (shells.on() && ratio > SD_FILM_LARGEST_RATIO)
     voice.fail("keyword lubrication: radii from " + text(smallest) + " to " + text(largest) +
                ": with multiblob lubrication is for ratios of radii up to 10; use group to select "
@@ -41,11 +42,12 @@ void Lubrication::provide(double largest, double smallest, bool halves)
     check(status);
     functions.reset(wider);
     largest_ratio = ratio;
+    films.exact = nullptr;
   }
-  if (halves)
-    check(sd_films_create_by_radius(shells.one_body, functions.get(), &films));
-  else if (shells.on())
-    check(sd_films_create(shells.points, shells.one_body, functions.get(), &films));
+  if (!shells.on() || (films.exact && kind == kind_of_films)) return;
+  check(halves ? sd_films_create_by_radius(shells.one_body, functions.get(), &films)
+               : sd_films_create(shells.points, shells.one_body, functions.get(), &films));
+  kind_of_films = kind;
 }
 
 void Lubrication::surround(const Scene &where)

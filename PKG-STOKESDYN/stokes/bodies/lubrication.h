@@ -13,6 +13,7 @@
 #include "sd_lubrication.h"
 #include "sd_random.h"
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -56,7 +57,9 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   Owned<sd_lubrication, sd_lubrication_free> near;
   std::unique_ptr<sd_two_sphere, void (*)(sd_two_sphere *)> functions{nullptr, sd_two_sphere_free};
   double largest_ratio = 0.0;
+  /* of shells of so many points, with the addition, by radius */
   sd_films films = {};
+  std::array<int, 3> kind_of_films = {};
   std::vector<double> u;
   std::vector<int> points;
   /* rows, then copies; velocities of the copies beyond those of their spheres; which are above */

@@ -28,7 +28,7 @@ const sd_film_kind sd_film_kinds[SD_FILM_HALF_KINDS] = {
     {642, 642, 3, 1.0, 2.0},
 };
 
-enum { RATIOS = SD_FILM_RATIOS, GAPS = SD_FILM_GAPS, SCALARS = SD_FILM_SCALARS };
+enum { RATIOS = SD_FILM_RATIOS, GAPS = SD_FILM_GAPS, SCALARS = SD_FILM_SCALARS, NUMBERS = SD_FILM_NUMBERS };
 
 static double node_of_xi(double xi)
 {
@@ -63,31 +63,6 @@ static void alike_at_ratio(const sd_films *films, double ratio, double out[GAPS]
   at_ratio(films->shells, 1, RATIOS, sd_film_v(ratio) / SD_FILM_LARGEST_V, out);
 }
 
-static void read_equal(sd_films *films)
-{
-  alike_at_ratio(films, 1.0, films->equal);
-  for (int j = 0; j < GAPS; j++) /* equal spheres do not know which is 1, to the last bit */
-    films->equal[j][2] = films->equal[j][4] = 0.5 * (films->equal[j][2] + films->equal[j][4]);
-}
-
-sd_status sd_films_create(int n, int one_body, const sd_two_sphere *exact, sd_films *out)
-{
-  if (n != 12 && n != 42) return SD_EOUTSIDE;
-  out->exact = exact;
-  out->half = NULL;
-  sd_two_sphere_nodes(GAPS, out->node, out->root);
-  out->shells = sd_film_table[2 * (n == 42) + (one_body != 0)];
-  read_equal(out);
-  return SD_OK;
-}
-
-sd_status sd_films_create_by_radius(int one_body, const sd_two_sphere *exact, sd_films *out)
-{
-  const sd_status status = sd_films_create(12, one_body, exact, out);
-  out->half = &sd_film_half_table[0][one_body != 0];
-  return status;
-}
-
 void sd_film_clip(double *p, double *q, double *r)
 {
   const double mean = 0.5 * (*p + *r), half = 0.5 * (*p - *r), root = sqrt(half * half + *q * *q);
@@ -104,9 +79,11 @@ void sd_film_clip(double *p, double *q, double *r)
   *r = 0.5 * most * (1.0 - c);
 }
 
-/* shells: the means of two shells at this ratio, node_of_xi of what their gaps stand for; a1 <= a2 */
-static sd_status film_of(const sd_films *films, const double (*shells)[SCALARS], double node, double a1,
-                         double a2, double xi, sd_film *film)
+/* Over sd_film_scales what two spheres resist beyond their shells, not clipped; over the first of these what the
+ * shells resist of an approach. shells: the means of two shells at this ratio, node_of_xi of what their gaps stand
+ * for; a1 <= a2 */
+static sd_status find_numbers(const sd_films *films, const double (*shells)[SCALARS], double node, double a1,
+                              double a2, double xi, double out[NUMBERS])
 {
   double w[GAPS], sums[SCALARS] = {0.0}, scale[SCALARS];
   sd_pair_resistance R;
@@ -116,26 +93,100 @@ static sd_status film_of(const sd_films *films, const double (*shells)[SCALARS],
   for (int j = 0; j < GAPS; j++)
     for (int k = 0; k < SCALARS; k++) sums[k] += w[j] * shells[j][k];
   sd_film_scales(a1, a2, scale);
-  const double approach =
-      scale[0] * sums[0] + sd_rpy_approach((1.0 + 0.5 * xi) * (a1 + a2), a1, a2, 1.0);
   const double beyond[SCALARS] = {R.XA[0], R.XC[0], R.YC[0], R.YC[1], R.YC[2]};
-  for (int k = 0; k < SCALARS; k++) sums[k] = beyond[k] / scale[k] - sums[k];
-  sd_film_clip(&sums[2], &sums[3], &sums[4]);
-  *film = (sd_film){scale[0] * fmax(sums[0], 0.0),
-                    scale[1] * fmax(sums[1], 0.0),
-                    {scale[2] * sums[2], scale[3] * sums[3], scale[4] * sums[4]},
-                    fmax(approach, 0.0)};
+  for (int k = 0; k < SCALARS; k++) out[k] = beyond[k] / scale[k] - sums[k];
+  out[SCALARS] = sums[0] + sd_rpy_approach((1.0 + 0.5 * xi) * (a1 + a2), a1, a2, 1.0) / scale[0];
   return SD_OK;
+}
+
+static double at_least_0(double x)
+{
+  return x > 0.0 ? x : 0.0;
+}
+
+static sd_film film_from(double number[NUMBERS], double a1, double a2)
+{
+  double scale[SCALARS];
+  sd_film_scales(a1, a2, scale);
+  sd_film_clip(&number[2], &number[3], &number[4]);
+  return (sd_film){scale[0] * at_least_0(number[0]),
+                   scale[1] * at_least_0(number[1]),
+                   {scale[2] * number[2], scale[3] * number[3], scale[4] * number[4]},
+                   scale[0] * at_least_0(number[SCALARS])};
+}
+
+static sd_status film_of(const sd_films *films, const double (*shells)[SCALARS], double node, double a1,
+                         double a2, double xi, sd_film *film)
+{
+  double number[NUMBERS];
+  const sd_status status = find_numbers(films, shells, node, a1, a2, xi, number);
+  if (status == SD_OK) *film = film_from(number, a1, a2);
+  return status;
+}
+
+/* Those of equal spheres are held at even steps in the logarithm of xi, a quarter as long as the exact ones: towards
+ * the largest gap the means of shells need these. */
+static double film_step(void)
+{
+  return log(SD_FILM_LARGEST_XI / SD_TWO_SPHERE_SMALLEST_XI) / (SD_FILM_STEPS - 1);
+}
+
+/* A_n is held times xi. Equal spheres do not know which is 1, to the last bit. */
+static sd_status tabulate_equal(sd_films *films)
+{
+  double shells[GAPS][SCALARS];
+  sd_status status = SD_OK;
+  alike_at_ratio(films, 1.0, shells);
+  for (int c = 0; c < SD_FILM_STEPS && status == SD_OK; c++) {
+    const double xi = SD_TWO_SPHERE_SMALLEST_XI * exp(c * film_step());
+    double *number = films->equal[c];
+    status = find_numbers(films, shells, node_of_xi(xi), 1.0, 1.0, xi, number);
+    number[0] *= xi;
+    number[2] = number[4] = 0.5 * (number[2] + number[4]);
+  }
+  return status;
+}
+
+sd_status sd_films_create(int n, int one_body, const sd_two_sphere *exact, sd_films *out)
+{
+  if (n != 12 && n != 42) return SD_EOUTSIDE;
+  out->exact = exact;
+  out->half = NULL;
+  sd_two_sphere_nodes(GAPS, out->node, out->root);
+  out->shells = sd_film_table[2 * (n == 42) + (one_body != 0)];
+  return tabulate_equal(out);
+}
+
+sd_status sd_films_create_by_radius(int one_body, const sd_two_sphere *exact, sd_films *out)
+{
+  const sd_status status = sd_films_create(12, one_body, exact, out);
+  out->half = &sd_film_half_table[0][one_body != 0];
+  return status;
+}
+
+static sd_film film_of_equal(const sd_films *films, double a, double xi)
+{
+  double w[SD_TWO_SPHERE_STENCIL], number[NUMBERS] = {0.0};
+  const double at = log(xi / SD_TWO_SPHERE_SMALLEST_XI) * (1.0 / film_step());
+  const int first = sd_two_sphere_stencil(at, SD_FILM_STEPS, w);
+  for (int j = 0; j < SD_TWO_SPHERE_STENCIL; j++)
+    for (int k = 0; k < NUMBERS; k++) number[k] += w[j] * films->equal[first + j][k];
+  number[0] /= xi;
+  return film_from(number, a, a);
 }
 
 /* a1 <= a2 */
 static sd_status film_alike(const sd_films *films, double a1, double a2, double xi, sd_film *film)
 {
-  double unequal[GAPS][SCALARS];
+  double shells[GAPS][SCALARS];
   if (!(a2 <= SD_FILM_LARGEST_RATIO * (1.0 + 1e-12) * a1)) return SD_EOUTSIDE;
-  if (!(xi <= SD_FILM_LARGEST_XI)) return SD_EOUTSIDE;
-  if (a2 > a1) alike_at_ratio(films, a2 / a1, unequal);
-  return film_of(films, a2 > a1 ? unequal : films->equal, node_of_xi(xi), a1, a2, xi, film);
+  if (!(xi >= SD_TWO_SPHERE_SMALLEST_XI && xi <= SD_FILM_LARGEST_XI)) return SD_EOUTSIDE;
+  if (a1 == a2) {
+    *film = film_of_equal(films, a1, xi);
+    return SD_OK;
+  }
+  alike_at_ratio(films, a2 / a1, shells);
+  return film_of(films, shells, node_of_xi(xi), a1, a2, xi, film);
 }
 
 static void film_exchange(sd_film *film)

@@ -31,7 +31,7 @@ SD_BEGIN_C
 #define SD_FILM_LARGEST_RATIO 10.0
 #define SD_FILM_LARGEST_XI 2.0
 
-enum { SD_FILM_RATIOS = 10, SD_FILM_GAPS = 12 };
+enum { SD_FILM_RATIOS = 10, SD_FILM_GAPS = 12, SD_FILM_STEPS = 720, SD_FILM_NUMBERS = 6 };
 
 /* For a viscosity of 1 */
 typedef struct {
@@ -47,14 +47,14 @@ typedef struct {
   /* nodes of the gaps (sd_two_sphere_nodes) */
   double node[SD_FILM_GAPS], root[SD_FILM_GAPS];
   const double (*shells)[SD_FILM_GAPS][5];
-  /* those of equal spheres, the commonest */
-  double equal[SD_FILM_GAPS][5];
+  /* films of equal spheres, the commonest, by steps of the gap up to SD_FILM_LARGEST_XI */
+  double equal[SD_FILM_STEPS][SD_FILM_NUMBERS];
   /* those by radius, every second one; NULL: all are alike */
   const double (*half)[SD_FILM_GAPS][5];
 } sd_films;
 
-/* Of shells of n points with or without the one-body addition; `exact` outlives it. SD_OK;
- * SD_EOUTSIDE: another n than 12 and 42. */
+/* Of shells of n points with or without the one-body addition; `exact` outlives it. As long as some hundred
+ * films. SD_OK; SD_EOUTSIDE: another n than 12 and 42. */
 sd_status sd_films_create(int n, int one_body, const sd_two_sphere *exact, sd_films *out);
 
 /* SD_OK; SD_EOUTSIDE: xi not in [SD_TWO_SPHERE_SMALLEST_XI, SD_FILM_LARGEST_XI], a ratio above

@@ -18,7 +18,7 @@ enum {
   GAPS = SD_TWO_SPHERE_GAPS,
   FUNCTIONS = SD_TWO_SPHERE_FUNCTIONS
 };
-enum { ROWS = 97, COLUMNS = 193, STENCIL = 6 };
+enum { ROWS = 97, COLUMNS = 193, STENCIL = SD_TWO_SPHERE_STENCIL };
 
 typedef double functions[FUNCTIONS];
 
@@ -125,8 +125,8 @@ void sd_two_sphere_free(sd_two_sphere *t)
   free(t);
 }
 
-/* Lagrange's polynomials of STENCIL even steps around the place at >= 0 among n; the first step */
-static int stencil(double at, int n, double w[STENCIL])
+/* Lagrange's polynomials */
+int sd_two_sphere_stencil(double at, int n, double w[STENCIL])
 {
   static const double inverse[STENCIL] = {-1.0 / 120, 1.0 / 24,  -1.0 / 12,
                                           1.0 / 12,   -1.0 / 24, 1.0 / 120};
@@ -143,9 +143,9 @@ static entry read_table(const sd_two_sphere *t, double ratio, double xi)
   static const double one[STENCIL] = {1.0};
   double wr[STENCIL], wc[STENCIL], value[NUMBERS] = {0.0};
   const int rows = ratio == 1.0 || t->rows == 1 ? 1 : STENCIL;
-  const int r = rows > 1 ? stencil(log(ratio) * (1.0 / row_step()), t->rows, wr) : 0;
+  const int r = rows > 1 ? sd_two_sphere_stencil(log(ratio) * (1.0 / row_step()), t->rows, wr) : 0;
   const double lowest = log(SD_TWO_SPHERE_SMALLEST_XI);
-  const int c = stencil((log(xi) - lowest) * (1.0 / column_step()), COLUMNS, wc);
+  const int c = sd_two_sphere_stencil((log(xi) - lowest) * (1.0 / column_step()), COLUMNS, wc);
   for (int i = 0; i < rows; i++)
     for (int j = 0; j < STENCIL; j++) {
       const double w = (rows > 1 ? wr : one)[i] * wc[j], *from = t->value[r + i][c + j];

@@ -35,6 +35,10 @@ void sd_two_sphere_weights(int n, double t, double *w);
 void sd_two_sphere_nodes(int n, double *node, double *root);
 void sd_two_sphere_weights_at(int n, const double *node, const double *root, double t, double *w);
 
+/* Weights of values at so many even steps around the place at >= 0 among n of them, and the first one */
+enum { SD_TWO_SPHERE_STENCIL = 6 };
+int sd_two_sphere_stencil(double at, int n, double w[SD_TWO_SPHERE_STENCIL]);
+
 /* mu of a gap; mu of SD_TWO_SPHERE_LARGEST_XI */
 double sd_two_sphere_mu(double ratio, double xi);
 double sd_two_sphere_largest_mu(double ratio);

@@ -269,6 +269,25 @@ static void either_sphere_first(void **state)
   CHECK_NEAR(equal.B[0] / equal.B[2], 1.0, 1e-14);
 }
 
+/* Equal spheres have a table of their own: they are the limit of others within 4e-8 Stokes drags up to a gap of one
+ * radius, towards the largest gap, where the means of shells vary, within 2e-6. */
+static void equal_spheres_are_the_limit(void **state)
+{
+  (void) state;
+  for (int kind = 0; kind < 4; kind++)
+    for (double xi = 1.001e-8; xi < 2.0; xi *= 1.0137) {
+      const int n = kind < 2 ? 12 : 42;
+      const sd_film one = film_at(n, kind % 2, 1.0, 1.0, xi), other = film_at(n, kind % 2, 1.0, 1.0 + 2e-13, xi);
+      const double tolerance = xi < 1.0 ? 4e-8 : 2e-6, drag = 6.0 * SD_PI, spin = 8.0 * SD_PI;
+      CHECK_NEAR(one.A_n, other.A_n, tolerance * fmax(drag, one.A_n));
+      CHECK_NEAR(one.A_t, other.A_t, tolerance * spin);
+      CHECK_NEAR(one.B[1], other.B[1], tolerance * spin);
+      CHECK_NEAR(one.B[0], 0.5 * (other.B[0] + other.B[2]), tolerance * spin);
+      CHECK_NEAR(one.shells_approach, other.shells_approach, tolerance * drag);
+      assert_true(one.B[0] == one.B[2]);
+    }
+}
+
 static void outside(void **state)
 {
   (void) state;
@@ -289,6 +308,7 @@ int main(void)
       cmocka_unit_test(either_sphere_first),  cmocka_unit_test(outside),
       cmocka_unit_test(twelve_with_twelve),   cmocka_unit_test(half_shells),
       cmocka_unit_test(either_half_shell_first), cmocka_unit_test(outside_of_half_shells),
+      cmocka_unit_test(equal_spheres_are_the_limit),
   };
   return cmocka_run_group_tests(tests, create, destroy);
 }
