@@ -24,6 +24,14 @@ static long beside_forces(const sd_bodies *A)
   return A->tie && sd_bodies_unknowns(A) < wanted ? wanted : 0;
 }
 
+/* Are there points that no body has, hidden within other spheres? Nobody writes their rows. */
+static int hides_points(const sd_bodies *A)
+{
+  long there = A->lone;
+  for (int b = 0; b < A->shaped; b++) there += A->body[b].shape->m;
+  return there < A->points.n;
+}
+
 long sd_bodies_work(const sd_bodies *A)
 {
   return 4 * sd_bodies_unknowns(A) + 9 * 6 * (long) sd_bodies_count(A) + SD_TIE_OF_SPHERE * (long) A->spheres.n +
@@ -228,12 +236,13 @@ sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
       .on_spheres = on_spheres,
       .alone = on_spheres + SD_TIE_OF_SPHERE * (long) A->spheres.n,
       .shells = sd_bodies_shells(A),
+      .hides = hides_points(A),
       .guess_is_new = problem->warm,
       .report = report,
   };
   if (beside_forces(A) > 0) c.tied = c.alone + 2 * largest_body(A);
   *report = (sd_bodies_report){.curvature = 1.0};
-  memset(work, 0, sizeof(double) * (size_t) (2 * size));
+  if (c.hides) memset(work, 0, sizeof(double) * (size_t) (2 * size));
   if (problem->warm) memcpy(c.v.x, answer->l, sizeof(double) * (size_t) rows);
   if (A->tie && (status = sd_tie_make(A, sd_bodies_lend(&c, c.v.p))) != SD_OK) return status;
   take_loads(&c);

@@ -35,6 +35,7 @@ sd_status sd_bodies_pre(sd_bodies_loop *c, const double *r, const double *f, int
   memcpy(tied, V, sizeof(double) * (size_t) size);
   const sd_status status = sd_tie_solve(A, load, r, c->tie_tolerance, moved, sd_bodies_lend(c, l), tied, borne);
   if (status != SD_OK) return status;
+  if (c->hides) memset(l, 0, sizeof(double) * (size_t) sd_bodies_unknowns(A)); /* the tie has used it */
   for (long j = 0; j < size; j++) load[j] = (f ? f[j] : 0.0) - borne[j];
   sd_bodies_alone(A, r, r ? bears : NULL, load, c->alone, l, V);
   for (int b = 0; b < sd_bodies_count(A); b++)

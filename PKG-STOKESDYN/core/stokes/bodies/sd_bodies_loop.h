@@ -31,7 +31,8 @@ typedef struct {
   double *on_spheres, *bodies, *alone;
   /* [SD_TIE_OF_BODY bodies] scratch of a tie; NULL: forces have as many rows, and lend theirs */
   double *tied;
-  int shells, guess_is_new;
+  /* hides: there are points that no body has, whose forces are 0 */
+  int shells, guess_is_new, hides;
   sd_bodies_verdict verdict;
   double tie_tolerance;
   sd_bodies_powers power;

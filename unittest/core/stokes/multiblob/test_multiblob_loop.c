@@ -164,6 +164,40 @@ static void warm_start_in_a_suspension(void **state)
   blob_flock_free(f);
 }
 
+/* Doublets whose spheres overlap, with films between them: points that are hidden within spheres have no part in the
+ * loop, though the films' system uses their rows. Whatever two loads do, F_1.V_2 is F_2.V_1, and each pair of spheres
+ * bears its load. */
+static void clumps_that_overlap(void **state)
+{
+  (void) state;
+  enum { CLUMPS = 8, SPHERES = 2 * CLUMPS };
+  static const double fused[6] = {0, 0, -0.5, 0, 0, 0.5};
+  uint64_t seed = 31;
+  double R[9 * CLUMPS], centre[3 * CLUMPS], F[2][6 * SPHERES], power[2] = {0.0};
+  for (int b = 0; b < CLUMPS; b++) {
+    random_rotation(&seed, R + 9 * b);
+    for (int d = 0; d < 3; d++) centre[3 * b + d] = 3.2 * (b >> d & 1);
+  }
+  blob_flock *f = clumps_at(12, CLUMPS, 2, fused, R, centre);
+  sd_bodies A = place(f, 0.0, 0.0);
+  tie_with_films(f, &A);
+  assert_true(f->s->L.count > 0 && !f->whole_shell[0]);
+  for (int load = 0; load < 2; load++) {
+    for (int i = 0; i < 6 * SPHERES; i++) F[load][i] = i % 6 < 3 ? uniform(&seed, -1, 1) : 0.0;
+    assert_int_equal(move(f, &A, F[load], 0, 1e-9), SD_OK);
+    assert_true(f->report.products < 25);
+    for (int b = 0; b < CLUMPS; b++)
+      for (int d = 0; d < 3; d++)
+        CHECK_NEAR(f->exerted[12 * b + d] + f->exerted[12 * b + 6 + d], F[load][12 * b + d] + F[load][12 * b + 6 + d],
+                   1e-12);
+    for (int i = 0; i < 6 * SPHERES && load == 1; i++) power[0] += F[0][i] * f->v[i];
+  }
+  assert_int_equal(move(f, &A, F[0], 0, 1e-9), SD_OK);
+  for (int i = 0; i < 6 * SPHERES; i++) power[1] += F[1][i] * f->v[i];
+  CHECK_NEAR(power[0], power[1], 1e-8 * fabs(power[0]));
+  blob_flock_free(f);
+}
+
 #define T 0.70710678118654752440
 static const double doublet[6] = {0, 0, -1, 0, 0, 1};
 static const double tetrahedron[12] = {T, T, T, T, -T, -T, -T, T, -T, -T, -T, T};
@@ -275,6 +309,7 @@ int main(void)
       cmocka_unit_test(lone_sphere),
       cmocka_unit_test(product_is_dense_where_parts_cut_shells),
       cmocka_unit_test(loop_is_dense_algebra),
+      cmocka_unit_test(clumps_that_overlap),
       cmocka_unit_test(lone_clumps),
       cmocka_unit_test(two_rigid_clumps),
       cmocka_unit_test(products_in_a_suspension),
