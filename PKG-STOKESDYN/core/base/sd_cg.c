@@ -62,13 +62,14 @@ static sd_status find_curvature(const sd_cg *A, const sd_cg_vectors *v, sd_cg_st
 sd_status sd_cg_run(const sd_cg *A, const sd_cg_vectors *v, sd_cg_state *now)
 {
   *now = (sd_cg_state){.steps = 0};
-  memset(v->p, 0, sizeof(double) * (size_t) A->size);
   for (;; now->steps++) {
     int done = 0;
     sd_status status = cg_look(A, v, now);
     if (status == SD_OK) status = A->judge(A->ctx, now, &done);
     if (status != SD_OK || done) return status;
-    for (long j = 0; j < A->size; j++) v->p[j] = v->z[j] + now->beta * v->p[j];
+    if (now->steps == 0) memcpy(v->p, v->z, sizeof(double) * (size_t) A->size);
+    else
+      for (long j = 0; j < A->size; j++) v->p[j] = v->z[j] + now->beta * v->p[j];
     if ((status = find_curvature(A, v, now)) != SD_OK) return status;
     now->alpha = now->rp / now->pw;
     for (long j = 0; j < A->size; j++) v->x[j] += now->alpha * v->p[j];

@@ -14,27 +14,52 @@ static void hold(const sd_bodies_loop *c, double *V)
     if (sd_bodies_velocity_known(c->A, (int) (j / 6), j % 6)) V[j] = known[j];
 }
 
-/* x = pre(-u, F) of bodies for themselves, and their power; z and w are scratch */
+/* r = -u: is it 0 for all points of this rank? */
+static int begin_residual(sd_bodies_loop *c)
+{
+  int rests = 1;
+  for (long j = 0; j < sd_bodies_unknowns(c->A); j++) {
+    const double u = c->problem->u[j];
+    c->v.r[j] = -u;
+    rests &= u == 0.0;
+  }
+  return rests;
+}
+
+/* l.(K V - u) of (l, V), and the power of drags D (u^2 + v^2) */
+static void find_powers(const sd_bodies_loop *c, const double *l, const double *V, double s[2])
+{
+  const sd_bodies *A = c->A;
+  const double *moved = sd_bodies_move_spheres(A, V, c->on_spheres);
+  double power[3] = {0.0}, drags[3] = {0.0};    /* three of each, which do not wait for each other */
+  for (sd_bodies_part part = {0}; sd_bodies_next(A, moved, &part);)
+    for (long j = part.begin; j < part.end; j += 3)
+      for (int d = 0; d < 3; d++) {
+        const double u = c->problem->u[j + d], v = part.v[j + d - part.begin];
+        power[d] += l[j + d] * (v - u);
+        drags[d] += A->D[j + d] * (u * u + v * v);
+      }
+  s[0] = power[0] + power[1] + power[2];
+  s[1] = drags[0] + drags[1] + drags[2];
+}
+
+/* x = pre(-u, F) of bodies for themselves, and their power; z is scratch */
 static sd_status start_alone(sd_bodies_loop *c)
 {
   const sd_bodies *A = c->A;
-  double s[3] = {0.0}, *V = sd_bodies_motion_of(c, c->v.x), *still = sd_bodies_motion_of(c, c->v.z);
-  double *moved = c->v.w;
-  for (long j = 0; j < sd_bodies_unknowns(A); j++) c->v.r[j] = -c->problem->u[j];
+  double s[4], *V = sd_bodies_motion_of(c, c->v.x), *still = sd_bodies_motion_of(c, c->v.z);
+  const int rests_here = begin_residual(c);
   hold(c, V);
-  sd_bodies_alone(A, c->v.r, NULL, c->f, c->alone, c->v.x, V);
-  sd_bodies_move(A, V, c->on_spheres, moved);
-  for (long j = 0; j < sd_bodies_unknowns(A); j++) {
-    const double u = c->problem->u[j], v = moved[j];
-    s[0] += c->v.x[j] * (v - u);
-    s[1] += A->D[j] * (u * u + v * v);
-  }
+  sd_bodies_alone(A, rests_here ? NULL : c->v.r, NULL, c->f, c->alone, c->v.x, V);
+  find_powers(c, c->v.x, V, s);
   sd_bodies_alone_move(A, c->f, still);
   s[2] = sd_bodies_spent(c, V) - sd_bodies_spent(c, still);
-  const sd_status status = sd_world_sum(&A->world, s, 3);
+  s[3] = !rests_here;
+  const sd_status status = sd_world_sum(&A->world, s, 4);
   c->power.alone = fabs(s[0]);
   c->power.floor = sd_bodies_rounding * sd_bodies_rounding * s[1];
   c->power.carried = s[2];
+  c->rests = s[3] == 0.0;
   return status;
 }
 
@@ -42,9 +67,11 @@ static sd_status start_alone(sd_bodies_loop *c)
 static sd_status expect(sd_bodies_loop *c)
 {
   const sd_bodies *A = c->A;
-  double s[2] = {0.0, 0.0};
+  double s[2], sum[3] = {0.0};
   if (!A->tie) return SD_OK;
-  for (long j = 0; j < sd_bodies_unknowns(A); j++) s[0] += A->D[j] * c->v.r[j] * c->v.r[j];
+  for (long j = 0; j < sd_bodies_unknowns(A); j += 3)
+    for (int d = 0; d < 3; d++) sum[d] += A->D[j + d] * c->v.r[j + d] * c->v.r[j + d];
+  s[0] = sum[0] + sum[1] + sum[2];
   s[1] = sd_bodies_spent(c, sd_bodies_motion_of(c, c->v.x));
   const sd_status status = sd_world_sum(&A->world, s, 2);
   c->power.spent = fmax(c->power.alone, s[1] - c->power.carried);
@@ -65,9 +92,10 @@ sd_status sd_bodies_start_cold(sd_bodies_loop *c)
 {
   sd_status status = start_alone(c);
   if (status == SD_OK && c->A->tie) {
+    const double *r = c->rests ? NULL : c->v.r;
     c->tie_tolerance = sd_bodies_accuracy_of(c)->start;
     hold(c, sd_bodies_motion_of(c, c->v.x));
-    status = sd_bodies_pre(c, c->v.r, c->f, c->problem->velocities != NULL, c->v.x, sd_bodies_motion_of(c, c->v.x));
+    status = sd_bodies_pre(c, r, c->f, c->problem->velocities != NULL, c->v.x, sd_bodies_motion_of(c, c->v.x));
   }
   return status == SD_OK ? find_residual(c) : status;
 }

@@ -61,11 +61,19 @@ static void to_space(const double R[9], int width, double scale, const double *s
   for (int d = 3; d < 6; d++) space[d] *= scale;
 }
 
+static int is_turned(const double R[9])
+{
+  for (int e = 0; e < 9; e++)
+    if (R[e] != (e % 4 == 0)) return 1;
+  return 0;
+}
+
 static void multiply6(const double A[36], double scale, const double x[6], double y[6])
 {
   for (int p = 0; p < 6; p++) {
-    y[p] = 0.0;
-    for (int q = 0; q < 6; q++) y[p] += scale * A[6 * p + q] * x[q];
+    double sum = 0.0;
+    for (int q = 0; q < 6; q++) sum += A[6 * p + q] * x[q];
+    y[p] = scale * sum;
   }
 }
 
@@ -74,6 +82,12 @@ static void turned6(const sd_body *b, const double A[36], double scale, double f
                     const double x[6], double out[6])
 {
   double in[6], y[6];
+  if (!is_turned(b->R)) {    /* lone shells, in every product of films */
+    for (int d = 0; d < 6; d++) in[d] = d < 3 ? x[d] : scale * x[d];
+    multiply6(A, factor, in, y);
+    for (int d = 0; d < 6; d++) out[d] = d < 3 ? y[d] : scale * y[d];
+    return;
+  }
   to_shape(b->R, 6, scale, x, in);
   multiply6(A, factor, in, y);
   to_space(b->R, 6, scale, y, out);
@@ -106,13 +120,6 @@ static void add_body_motion(const sd_body_shape *s, const double V[6], double *y
     for (int d = 0; d < 3; d++) y[d] += V[d] + turning[d];
     for (int d = 3; d < s->width; d++) y[d] += V[d];
   }
-}
-
-static int is_turned(const double R[9])
-{
-  for (int e = 0; e < 9; e++)
-    if (R[e] != (e % 4 == 0)) return 1;
-  return 0;
 }
 
 /* Rows of a body in the axes and lengths of its shape, or back to rows: vectors are as they are where it is not
@@ -164,10 +171,10 @@ static void body_respond(const sd_body *b, sd_body_known known, const double *r,
   const double s = b->eta * b->a;
   const int N = shape->width * shape->m;
   double *y = scratch, *z = scratch + N, own[6] = {0.0}, load[6] = {0.0}, motion[6];
-  memset(y, 0, sizeof(double) * (size_t) (2 * N));
   for (int d = 0; d < 6; d++) own[d] = (f ? f[d] : 0.0) - (bears ? bears[d] : 0.0);
   to_shape(b->R, 6, 1.0 / b->a, own, load);
   if (r) read_rows(b, r, y);
+  else memset(y, 0, sizeof(double) * (size_t) N);
   if (r && !bears) add_rigid(shape, y, -s, load);
   if (known == SD_BODY_FREE) {
     multiply6(shape->mobility, 1.0 / s, load, motion);
