@@ -26,7 +26,7 @@ static int begin_residual(sd_bodies_loop *c)
   return rests;
 }
 
-/* l.(K V - u) of (l, V), and the power of drags D (u^2 + v^2) */
+/* l.(K V - u) of (l, V), l NULL: 0; and the power of drags D (u^2 + v^2) */
 static void find_powers(const sd_bodies_loop *c, const double *l, const double *V, double s[2])
 {
   const sd_bodies *A = c->A;
@@ -36,23 +36,26 @@ static void find_powers(const sd_bodies_loop *c, const double *l, const double *
     for (long j = part.begin; j < part.end; j += 3)
       for (int d = 0; d < 3; d++) {
         const double u = c->problem->u[j + d], v = part.v[j + d - part.begin];
-        power[d] += l[j + d] * (v - u);
+        if (l) power[d] += l[j + d] * (v - u);
         drags[d] += A->D[j + d] * (u * u + v * v);
       }
   s[0] = power[0] + power[1] + power[2];
   s[1] = drags[0] + drags[1] + drags[2];
 }
 
-/* x = pre(-u, F) of bodies for themselves, and their power; z is scratch */
-static sd_status start_alone(sd_bodies_loop *c)
+/* x = pre(-u, F) of bodies for themselves, and their power; z is scratch. Where nobody wants their forces l and all
+ * are free in a fluid that rests, V is N F and l.K V is F.V. */
+static sd_status start_alone(sd_bodies_loop *c, int wanted)
 {
   const sd_bodies *A = c->A;
   double s[4], *V = sd_bodies_motion_of(c, c->v.x), *still = sd_bodies_motion_of(c, c->v.z);
-  const int rests_here = begin_residual(c);
-  hold(c, V);
-  sd_bodies_alone(A, rests_here ? NULL : c->v.r, NULL, c->f, c->alone, c->v.x, V);
-  find_powers(c, c->v.x, V, s);
+  const int rests_here = begin_residual(c), brief = rests_here && !wanted && !A->known;
   sd_bodies_alone_move(A, c->f, still);
+  hold(c, V);
+  if (brief) memcpy(V, still, sizeof(double) * (size_t) sd_bodies_motions(c));
+  else sd_bodies_alone(A, rests_here ? NULL : c->v.r, NULL, c->f, c->alone, c->v.x, V);
+  find_powers(c, brief ? NULL : c->v.x, V, s);
+  for (long j = 0; brief && j < sd_bodies_motions(c); j++) s[0] += c->f[j] * V[j];
   s[2] = sd_bodies_spent(c, V) - sd_bodies_spent(c, still);
   s[3] = !rests_here;
   const sd_status status = sd_world_sum(&A->world, s, 4);
@@ -90,7 +93,7 @@ static sd_status find_residual(sd_bodies_loop *c)
 
 sd_status sd_bodies_start_cold(sd_bodies_loop *c)
 {
-  sd_status status = start_alone(c);
+  sd_status status = start_alone(c, !c->A->tie);
   if (status == SD_OK && c->A->tie) {
     const double *r = c->rests ? NULL : c->v.r;
     c->tie_tolerance = sd_bodies_accuracy_of(c)->start;
@@ -152,7 +155,7 @@ sd_status sd_bodies_start_warm(sd_bodies_loop *c, const double *v_with_l)
   memcpy(guess, c->v.x, sizeof(double) * (size_t) sd_bodies_unknowns(A));
   if (A->tie) guess_motion(c, v_with_l, sd_bodies_motion_of(c, guess));
   sd_status status = repair(c, guess);
-  if (status == SD_OK) status = start_alone(c);
+  if (status == SD_OK) status = start_alone(c, 0);
   memcpy(c->v.x, guess, sizeof(double) * (size_t) (sd_bodies_unknowns(A) + (A->tie ? sd_bodies_motions(c) : 0)));
   return status == SD_OK ? find_residual(c) : status;
 }

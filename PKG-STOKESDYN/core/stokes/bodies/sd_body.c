@@ -98,6 +98,19 @@ void sd_body_resistance(const sd_body *b, const double V[6], double f[6])
   turned6(b, b->shape->resistance, b->a, b->eta * b->a, V, f);
 }
 
+void sd_body_resistance_block(const sd_body *b, double B[36])
+{
+  const double a = b->a, s = b->eta * a, t[6] = {1.0, 1.0, 1.0, a, a, a};
+  const int turned = is_turned(b->R);
+  for (int e = 0; e < 36 && !turned; e++) B[e] = s * t[e / 6] * t[e % 6] * b->shape->resistance[e];
+  for (int q = 0; q < 6 && turned; q++) {
+    double unit[6] = {0.0}, column[6];
+    unit[q] = 1.0;
+    sd_body_resistance(b, unit, column);
+    for (int p = 0; p < 6; p++) B[6 * p + q] = column[p];
+  }
+}
+
 /* K^T M_b'^-1 y of a body, as load in its axes and lengths, times a number; every second row in sums of its own,
  * which do not wait for the others */
 static void add_rigid(const sd_body_shape *s, const double *y, double times, double load[6])

@@ -54,16 +54,12 @@ static int is_zero(const double B[36])
 /* H_0 of body b */
 static void factor_own_block(const sd_bodies *A, int b, double H[36])
 {
-  const double *D = b < A->lone ? A->D + 6 * (long) A->loner[b] : NULL;
-  for (int q = 0; q < 6; q++) {
-    double unit[6] = {0.0}, column[6] = {0.0};
-    unit[q] = 1.0;
-    if (D)
-      column[q] = D[q];
-    else
-      sd_body_resistance(A->body + b - A->lone, unit, column);
-    for (int p = 0; p < 6; p++) H[6 * p + q] = column[p];
+  if (b >= A->lone) {
+    sd_body_resistance_block(A->body + b - A->lone, H);
+    return;
   }
+  memset(H, 0, 36 * sizeof(double));
+  for (int d = 0; d < 6; d++) H[7 * d] = A->D[6 * (long) A->loner[b] + d];
 }
 
 /* L_ii + X_ii of a sphere */
@@ -112,8 +108,10 @@ static double strength(const sd_lubrication_link *l, const double p[2], const do
 
 static void largest_scales(const double s[6], double of[2])
 {
-  of[0] = fmax(fmax(s[0], s[1]), s[2]);
-  of[1] = fmax(fmax(s[3], s[4]), s[5]);
+  for (int w = 0; w < 2; w++, s += 3) {
+    of[w] = s[0] > s[1] ? s[0] : s[1];
+    of[w] = s[2] > of[w] ? s[2] : of[w];
+  }
 }
 
 static const double *scales_of_sphere(const sd_bodies *A, const double *place, int sphere)
@@ -131,7 +129,7 @@ double sd_tie_find_block(const sd_bodies *A, const double *place, long k, double
   const double *sp = scales_of_sphere(A, place, i), *sq = scales_of_sphere(A, place, j);
   const int arms = has_arm(rp) || has_arm(rq);
   sd_lubrication_link both = t->L->link[k];
-  double of_p[2], of_q[2], B[36] = {0.0}, sum = 0.0;
+  double of_p[2], of_q[2], B[36] = {0.0}, sum[6] = {0.0};    /* six, none of which waits for the others */
   both.XA -= t->spring[k]; /* L_12 + X_12 */
   largest_scales(sp, of_p);
   largest_scales(sq, of_q);
@@ -139,6 +137,7 @@ double sd_tie_find_block(const sd_bodies *A, const double *place, long k, double
   sd_lubrication_add_block(&both, B);
   if (arms) move_to_centres(rp, rq, B);
   add_scaled(B, sp, sq, scaled);
-  for (int e = 0; e < 36; e++) sum += scaled[e] * scaled[e];
-  return sum;
+  for (int p = 0; p < 6; p++)
+    for (int q = 0; q < 6; q++) sum[q] += scaled[6 * p + q] * scaled[6 * p + q];
+  return sum[0] + sum[1] + sum[2] + sum[3] + sum[4] + sum[5];
 }

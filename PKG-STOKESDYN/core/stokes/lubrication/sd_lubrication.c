@@ -167,8 +167,8 @@ static sd_status resistance_of(const sd_lubrication *L, const sd_lubrication_sce
   const int i = L->pair[k][0];
   const double *n = L->work->neighbours, ai = s->spheres.a[i], aj = s->spheres.a[c->at];
   const double gap = gap_of_film(s, i, c), t = weight_of_film(s, i, c);
-  const double scale = t * eta, xi = fmax(gap, s->gap), apart = fmax(gap, 0.0);
-  const double q = fmin(apart / film_range_of(s, ai, aj), 1.0), fading = 1.0 - q * q * (3.0 - 2.0 * q);
+  const double scale = t * eta, xi = gap > s->gap ? gap : s->gap, apart = gap > 0.0 ? gap : 0.0;
+  const double fading = film_fading(apart / film_range_of(s, ai, aj)), closest = 0.01 * (ai + aj);
   if (!s->films) {
     *model = fading * sd_rpy_approach((1.0 + 0.5 * apart) * (ai + aj), ai, aj, eta);
     const double share = shared(2.0 * t / (n[i] + n[c->at]));
@@ -180,7 +180,7 @@ static sd_status resistance_of(const sd_lubrication *L, const sd_lubrication_sce
       ? sd_film_between(s->films, s->points[i], s->points[c->at], ai, aj, xi, &film)
       : sd_film_at(s->films, ai, aj, xi, &film);
   if (status != SD_OK) return status;
-  *R = sd_film_resistance(&film, fmax(c->distance, 0.01 * (ai + aj)), scale);
+  *R = sd_film_resistance(&film, c->distance > closest ? c->distance : closest, scale);
   *model = fading * eta * film.shells_approach;
   return SD_OK;
 }

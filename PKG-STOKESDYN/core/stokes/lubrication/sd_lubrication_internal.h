@@ -77,6 +77,13 @@ static inline double film_range_of(const sd_lubrication_scene *s, double ai, dou
   return s->points ? s->range * 4.0 * ai * aj / (sum * sum) : s->range;
 }
 
+/* 1 up to q = 0, 0 from q = 1 on */
+static inline double film_fading(double q)
+{
+  const double s = q > 1.0 ? 1.0 : q > 0.0 ? q : 0.0;
+  return 1.0 - s * s * (3.0 - 2.0 * s);
+}
+
 /* The gap of a pair over its mean radius, and t of it */
 static inline double gap_of_film(const sd_lubrication_scene *s, int i, const closeness *c)
 {
@@ -86,8 +93,7 @@ static inline double gap_of_film(const sd_lubrication_scene *s, int i, const clo
 static inline double weight_of_film(const sd_lubrication_scene *s, int i, const closeness *c)
 {
   const double range = film_range_of(s, s->spheres.a[i], s->spheres.a[c->at]);
-  const double q = fmin(fmax(2.0 * gap_of_film(s, i, c) / range - 1.0, 0.0), 1.0);
-  return 1.0 - q * q * (3.0 - 2.0 * q);
+  return film_fading(2.0 * gap_of_film(s, i, c) / range - 1.0);
 }
 
 /* out += B V for a block of a pair */
