@@ -170,6 +170,16 @@ void BodyScene::tie_films(Films films)
   tie.L = lubrication.matrix();
   tie.above = lubrication.those_above();
   bodies.tie = &tie;
+  tie.keep = 0;
+}
+
+/* Of smaller gaps the factor would be made anew in every solve (stiffest of sd_tie_kept.c). */
+static const double GAP_TO_KEEP = 5e-4;
+
+bool BodyScene::films_by_places() const
+{
+  return bodies.tie && lubrication.settings.gap >= GAP_TO_KEEP && !bodies.known && !rigid.settings.on &&
+      !scene.settings.boundary.walled();
 }
 
 void BodyScene::stand_films(const std::vector<int> &who)

@@ -66,6 +66,19 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   sd_bodies undrawn() const;
   /* The films of these atoms where they stand now, before the points of the bodies go elsewhere */
   void stand_films(const std::vector<int> &who);
+  /* Is the factor of films (sd_tie.h) a matter of where lone spheres stand, and nothing else? Then it may be
+   * that of other places [3 spheres], where films stand until they are back where the spheres do. */
+  bool films_by_places() const;
+  void films_at(const std::vector<double> &places)
+  {
+    lubrication.place_at(scene, places);
+    tie.above = lubrication.those_above();
+  }
+  void films_back()
+  {
+    lubrication.place(scene, &ambient);
+    tie.above = lubrication.those_above();
+  }
   /* Those that stand, in a fluid at rest; random forces of them (Lubrication::draw) */
   void rest_films() { lubrication.place(scene, nullptr); }
   sd_status draw_films(const sd_random_key &key, double *forces) const

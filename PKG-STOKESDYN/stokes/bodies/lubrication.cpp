@@ -50,12 +50,13 @@ void Lubrication::provide(double largest, double smallest, bool halves)
   kind_of_films = kind;
 }
 
-void Lubrication::surround(const Scene &where)
+/* places [3 n]: of the rows */
+void Lubrication::surround(const Scene &where, const double *places)
 {
   const size_t n = where.size();
   const sd_spheres rows = where.local();
   const Lattice lattice = Lattice::of(domain);
-  x.assign(rows.x, rows.x + 3 * n);
+  x.assign(places, places + 3 * n);
   a.assign(rows.a, rows.a + n);
   w.assign(rows.w, rows.w + n);
   if (!halo.find_or_keep(lattice, (2.0 + settings.range) * where.largest(), x))
@@ -69,11 +70,23 @@ void Lubrication::surround(const Scene &where)
 
 void Lubrication::place(Scene &where, const Ambient *fluid, bool noisy)
 {
+  surround(where, where.local().x);
+  place_films(where, fluid, noisy);
+  for (int k = 0; k < where.settings.boundary.walls; k++) add_wall(where, where.settings.boundary.wall[k]);
+}
+
+void Lubrication::place_at(Scene &where, const std::vector<double> &places)
+{
+  surround(where, places.data());
+  place_films(where, nullptr, false);
+}
+
+/* In these surroundings */
+void Lubrication::place_films(Scene &where, const Ambient *fluid, bool noisy)
+{
   const bool halves = where.shells && where.shells->halves();
-  surround(where);
   if (where.largest() > 0.0) provide(where.largest(), where.smallest(), halves);
-  const Boundary &boundary = where.settings.boundary;
-  const bool asks_flow = !shells.on() || boundary.walls > 0;
+  const bool asks_flow = !shells.on() || where.settings.boundary.walls > 0;
   if (asks_flow) u.assign(6 * (size_t) where.size() + 6, 0.0);
   if (asks_flow && fluid) {
     u = where.rows(6, [&](int i, double *out) { fluid->fluid(i, out); });
@@ -96,7 +109,6 @@ void Lubrication::place(Scene &where, const Ambient *fluid, bool noisy)
   scene.noisy = noisy;
   scene.world = halo.ranks();
   check(sd_lubrication_place(&near, &scene));
-  for (int k = 0; k < boundary.walls; k++) add_wall(where, boundary.wall[k]);
 }
 
 /* The film of each sphere at its own height (those of two walls add up, since the points of a shell know

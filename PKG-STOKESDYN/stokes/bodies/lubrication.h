@@ -39,6 +39,8 @@ class Lubrication : protected LAMMPS_NS::Pointers {
    * it and the box rest), on all ranks. noisy: random forces will be drawn. Error: radii that are too
    * different. */
   void place(Scene &scene, const Ambient *fluid, bool noisy = false);
+  /* The same spheres at x [3 n], in a fluid and a box that rest, without walls */
+  void place_at(Scene &scene, const std::vector<double> &x);
   /* Since then */
   sd_lubrication *matrix() { return &near; }
   /* [copies] as sd_tied.h has it */
@@ -66,7 +68,8 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   Halo halo;
   std::vector<double> x, a, w, drift, above;
 
-  void surround(const Scene &where);
+  void surround(const Scene &where, const double *places);
+  void place_films(Scene &where, const Ambient *fluid, bool noisy);
   void add_wall(const Scene &where, const sd_wall &wall);
   void provide(double largest, double smallest, bool halves);
   void check(sd_status status) const;

@@ -13,7 +13,7 @@ namespace StokesDyn {
 Solve::Solve(LAMMPS *lmp, Scene &scene, BodyScene &bodies, const Ambient &ambient, const Shells &shells,
              const StokesSettings &settings) :
     Pointers(lmp), preconditioner(lmp, scene), guess(lmp, scene, bodies, shells, settings), scene(scene),
-    bodies(bodies), ambient(ambient)
+    bodies(bodies), ambient(ambient), factor(lmp, scene, bodies)
 {
 }
 
@@ -31,7 +31,15 @@ double Solve::memory_usage() const
 sd_status Solve::run(const How &how, sd_solve_report &report)
 {
   found.set(scene.all_epochs().step);
-  return solve_bodies(how, guess.recall(how.asked, std::move(l)), report);
+  FixStokesDynamicsState &memory = *guess.memory;
+  if (how.asked != Guess::MOTIONS) {
+    factor.forget();
+    return solve_bodies(how, guess.recall(how.asked, std::move(l)), report);
+  }
+  factor.recall(memory.made_at, memory.global.made_in_box);
+  const sd_status status = solve_bodies(how, guess.recall(how.asked, std::move(l)), report);
+  factor.note(memory.made_at, memory.global.made_in_box);
+  return status;
 }
 
 sd_status Solve::resist(const double *motions, int max_iter, double *forces)

@@ -13,6 +13,7 @@
 #include "body_noise.h"
 #include "body_scene.h"
 #include "callback.h"
+#include "films_factor.h"
 #include "guess.h"
 #include "pointers.h"
 #include "preconditioner.h"
@@ -115,6 +116,7 @@ class Solve : protected LAMMPS_NS::Pointers {
   Scene &scene;
   BodyScene &bodies;
   const Ambient &ambient;
+  FilmsFactor factor;
   Stamp found;
 
   /* by spheres: force of the fluid, what system() points to; scratch of sd_bodies */

@@ -100,6 +100,50 @@ def test_a_restart_file_of_the_midst_of_a_run_is_that_of_its_end(simulation, tmp
     assert np.abs(again.run(8).x - x).max() < 1e-13
 
 
+@pytest.mark.parametrize("points", ["rotation yes", "multiblob 12"])
+def test_a_restart_file_knows_where_the_factor_of_films_was_made(simulation, tmp_path, points):
+    """To a loose tolerance the answer shows which factor its preconditioner has: that of some steps ago, as long as
+    films hardly change. Of a row of spheres it is the same in whatever order they are."""
+    rng, n = np.random.default_rng(8), 12
+    x = np.column_stack([2.06 * np.arange(n) - 12, *rng.uniform(-0.1, 0.1, (2, n))])
+    words = [f"pair_style stokes_dynamics cut_off_distance inf visc {1 / P6!r} relative_tolerance 0.03 lubrication yes "
+             f"warm_start no {points}", "pair_coeff * *"]
+    lines = input_lines(Spheres(rng.permutation(x)), words, str(tmp_path / "data"), fix=False,
+                        box=[(-99.0, 99.0)] * 3, dt=2e-4)
+    rest = ["variable fx atom sin(3*x)", "variable fz atom cos(2*x)", "fix pull all addforce v_fx 0 v_fz", FIX]
+    whole = simulation().commands(lines + rest).run(30).v
+    sim = simulation().commands(lines + rest).run(13)
+    sim.command(f"write_restart {tmp_path}/half")
+    pieces = sim.run(17).v
+    sim = simulation().commands(["plugin load stokesdynplugin.so", f"read_restart {tmp_path}/half", *words] + rest)
+    for v in (pieces, sim.run(17).v):
+        assert np.abs(v - whole).max() < 1e-9
+
+
+@pytest.mark.parametrize("change", ["fix grow all adapt 1 atom diameter v_d", "fix grow tail adapt 1 atom diameter v_d",
+                                    "change_box all x scale 1.0005 y scale 1.0005 z scale 1.0005 remap units box"])
+def test_a_factor_of_films_is_not_that_of_other_numbers(simulation, tmp_path, change):
+    """Radii within a run, or the box between two, change so little that films hardly do: to a loose tolerance the
+    answer is still that of a factor of now, as in a run that has had no other."""
+    rng, n = np.random.default_rng(8), 12
+    x = np.column_stack([2.06 * np.arange(n) - 12, *rng.uniform(-0.1, 0.1, (2, n))])
+    words = (f"cut_off_distance inf visc {1 / P6!r} relative_tolerance 0.03 lubrication yes warm_start no rotation yes "
+             "far_field_tolerance 1e-9")
+    found = []
+    for begin in (1, 0):    # a step is far shorter than any digit of the places
+        lines = input_lines(Spheres(x), words, str(tmp_path / "data"), fix=False, box=[(-12.5, 12.5)] * 3, dt=1e-18,
+                            boundary="p p p")
+        lines[1] = "atom_style hybrid sphere 1 bond"
+        sim = simulation().commands(lines + [f"variable d equal 2.002-0.002*(step<{begin})", "group tail id 1:4",
+                                             "variable fx atom sin(3*x)", "variable fz atom cos(2*x)",
+                                             "fix pull all addforce v_fx 0 v_fz", FIX])
+        if "adapt" in change:
+            found.append(sim.commands(change).run(1).v)
+        else:
+            found.append((sim.run(1) if begin else sim).commands(change).run(0).v)
+    assert np.abs(found[1] - found[0]).max() < 1e-9
+
+
 def test_a_sphere_moved_by_hand_starts_anew(simulation):
     """displace_atoms between runs: what was before the move says nothing of the path after it."""
     ends = []

@@ -154,6 +154,20 @@ static sd_status bodies_iterate(sd_bodies_loop *c)
   return status == SD_ESINGULAR ? SD_EINDEFINITE : status;
 }
 
+/* The norm in which the tie is solved is that of its factor. One that was kept may be blind to a film that was stiff
+ * and is not now, so that r.z is negative: of what is left forces are made by bodies alone. Then it says nothing of the
+ * mobility, and the solve begins anew with a factor of now. */
+static sd_status bodies_iterate_tied(sd_bodies_loop *c)
+{
+  struct sd_tie *tie = c->A->tie;
+  sd_status status = bodies_iterate(c);
+  if (status != SD_EINDEFINITE || !tie || tie->anew) return status;
+  tie->keep = 0;
+  c->verdict = BEGIN_ANEW;
+  status = sd_tie_make(c->A, sd_bodies_lend(c, c->v.p));
+  return status == SD_OK ? bodies_iterate(c) : status;
+}
+
 /* --- what comes of it --- */
 
 /* K^T l + K_s^T L K_s V = F + K_s^T L V_inf. Torques on those that are spun are not read, nor forces on
@@ -247,7 +261,7 @@ sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
   if (A->tie && (status = sd_tie_make(A, sd_bodies_lend(&c, c.v.p))) != SD_OK) return status;
   take_loads(&c);
   status = problem->warm ? sd_bodies_start_warm(&c, answer->v_with_l) : sd_bodies_start_cold(&c);
-  if (status == SD_OK) status = bodies_iterate(&c);
+  if (status == SD_OK) status = bodies_iterate_tied(&c);
   if (status != SD_OK && status != SD_EMAXITER) return status;
   const sd_status last = finish(&c, answer);
   return last == SD_OK ? status : last;

@@ -137,7 +137,7 @@ void sd_tie_free(sd_tie *t)
 {
   sd_block_cholesky_free(&t->factor);
   void *const arrays[] = {t->spring, t->stiff, t->scale, t->other, t->all,    t->face, t->faces_there,
-                          t->weight, t->shared, t->lent, t->away,  t->lend,   t->borrow, t->sent};
+                          t->weight, t->shared, t->lent, t->away,  t->lend,   t->borrow, t->sent, t->made_of};
   for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) free(arrays[k]);
   *t = (sd_tie){0};
 }

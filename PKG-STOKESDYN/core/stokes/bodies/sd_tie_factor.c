@@ -7,6 +7,7 @@
 #include "sd_room.h"
 #include "sd_tie_blocks.h"
 #include "sd_tie_border.h"
+#include "sd_tie_kept.h"
 
 /* In units of the drags of the bodies: pairs whose block is smaller are left out of the factor, as
  * is such fill. */
@@ -240,14 +241,29 @@ static void assembly_free(assembly *a)
   for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) free(arrays[k]);
 }
 
+static int copies_of(const sd_bodies *A)
+{
+  return sd_tie_is_layered(A) ? A->tie->L->n_all - A->tie->L->n : 0;
+}
+
+/* For H_ii, which say whether the factor stays */
+static sd_status reserve_diagonal(const sd_bodies *A)
+{
+  sd_tie *t = A->tie;
+  const size_t bodies = (size_t) sd_bodies_count(A);
+  return sd_reserve(&t->scale, sizeof(double), 6 * (bodies + (size_t) copies_of(A)), &t->most_scales) &&
+          sd_extend(&t->made_of, 6 * sizeof(double), bodies + 1, &t->most_made_of)
+      ? SD_OK
+      : SD_ENOMEMORY;
+}
+
 static sd_status factor_reserve(const sd_bodies *A, assembly *a)
 {
   sd_tie *t = A->tie;
-  a->copies = sd_tie_is_layered(A) ? t->L->n_all - t->L->n : 0;
+  a->copies = copies_of(A);
   const size_t bodies = (size_t) sd_bodies_count(A), copies = (size_t) a->copies, number = sizeof(double);
   t->others = t->lents = t->aways = t->severed = 0;
   const int there = assembly_reserve(A, a) &&
-      sd_reserve(&t->scale, number, 6 * (bodies + copies), &t->most_scales) &&
       sd_reserve(&t->weight, number, bodies, &t->most_weights) &&
       sd_reserve(&t->shared, sizeof(int), bodies, &t->most_shared) &&
       sd_reserve(&t->other, sizeof(*t->other), copies, &t->most_others) &&
@@ -332,13 +348,14 @@ static sd_status share_border(const sd_bodies *A, assembly *a, sd_status mine)
   return status == SD_OK ? assemble_border(A, a) : status;
 }
 
-sd_status sd_tie_factor(const sd_bodies *A, double *blocks)
+static sd_status make_anew(const sd_bodies *A, double *blocks, sd_status mine)
 {
   const sd_world *world = &A->tie->L->world;
   const int layered = sd_tie_is_layered(A);
   assembly a = {.diagonal = blocks};
-  sd_status status = sd_world_agree(world, factor_reserve(A, &a));
-  if (status == SD_OK) sd_tie_find_diagonal(A, blocks);
+  A->tie->made_for = -1;
+  sd_status status = sd_world_agree(world, mine == SD_OK ? factor_reserve(A, &a) : mine);
+  if (status == SD_OK) sd_tie_note(A, blocks);
   if (status == SD_OK && layered) status = tell_places(A, &a);
   if (status == SD_OK) look_across(A, &a);
   if (layered && world->ranks > 2) status = look_farther(A, &a, status);
@@ -347,6 +364,17 @@ sd_status sd_tie_factor(const sd_bodies *A, double *blocks)
   if (status == SD_OK) status = sd_block_cholesky_finish(&A->tie->factor, drop);
   status = sd_world_agree(world, status);
   if (status == SD_OK && layered) status = weigh(A, &a);
+  if (status != SD_OK) A->tie->made_for = -1;
   assembly_free(&a);
   return status;
+}
+
+sd_status sd_tie_factor(const sd_bodies *A, double *blocks)
+{
+  int stays = 0;
+  const sd_status mine = reserve_diagonal(A);
+  if (mine == SD_OK) sd_tie_find_diagonal(A, blocks);
+  const sd_status status = A->tie->keep ? sd_tie_kept(A, blocks, mine, &stays) : SD_OK;
+  A->tie->anew = !stays;
+  return stays || status != SD_OK ? status : make_anew(A, blocks, mine);
 }

@@ -26,8 +26,8 @@
 
 #include "sd_tied.h"
 
-/* Where A->tie->L stands; blocks [36 bodies]: scratch. On all ranks together, which agree on failures.
- * Status as of sd_tie_make. */
+/* Where A->tie->L stands, or the one of before (A->tie->keep); blocks [36 bodies]: scratch. On all ranks
+ * together, which agree on failures. Status as of sd_tie_make. */
 sd_status sd_tie_factor(const sd_bodies *A, double *blocks);
 /* z = P^-1 r, by bodies; 0 for those that nobody is near to, and held ones. SD_OK; that of a function of
  * sd_world */

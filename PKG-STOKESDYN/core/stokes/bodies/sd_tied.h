@@ -27,12 +27,19 @@ typedef struct sd_tie {
   const double *above;
   /* products with L since sd_tie_make */
   long products;
+  /* For sd_tie_make, the same on all ranks: is the factor of these bodies, with these numbers? Then it stays
+   * where H has hardly changed (sd_tie_kept.h). And what came of it: was it made anew? */
+  int keep, anew;
   /* of the bodies of this rank and of `others` of other ranks (sd_tie_factor.h), in ascending order */
   sd_block_cholesky factor;
   sd_tie_other *other;
   int others;
   /* does a stiff pair chain bodies together that more than two ranks share? The same on all of them */
   int severed;
+  /* [6 bodies] translations in H_ii of then, scaled, when the factor was made: xx yy zz xy xz yz; of so many
+   * bodies, -1: there is no factor */
+  double *made_of;
+  int made_for;
   /* [6 (bodies + others)] 1 over the roots of the diagonal of H_0; 0: nobody is near to this body,
    * or this of its velocity is given */
   double *scale;
@@ -51,7 +58,7 @@ typedef struct sd_tie {
   /* scratch: by bodies and others */
   double *all;
   size_t most_scales, most_weights, most_shared, most_others, most_lent, most_away, most_lend, most_borrow,
-      most_sent, most_springs, most_stiff, most_all, most_faces, most_faces_there;
+      most_sent, most_springs, most_stiff, most_all, most_faces, most_faces_there, most_made_of;
 } sd_tie;
 
 /* Do ranks share bodies at their borders? */

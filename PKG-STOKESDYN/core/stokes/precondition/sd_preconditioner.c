@@ -1,5 +1,6 @@
 #include "sd_preconditioner.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -113,8 +114,13 @@ void sd_moved_add(double sums[SD_MOVED], const double d[3], double a)
 }
 
 /* sum |d - mean d|^2 = sum d.d - |sum d|^2/n */
-int sd_moved_too_far(const double s[SD_MOVED])
+double sd_moved_far(const double s[SD_MOVED])
 {
   const double common = s[1] * s[1] + s[2] * s[2] + s[3] * s[3];
-  return s[0] > 0.0 && s[4] - common / s[0] > FAR * FAR * s[5];
+  return s[0] > 0.0 ? sqrt(fmax(s[4] - common / s[0], 0.0) / s[5]) : 0.0;
+}
+
+int sd_moved_too_far(const double s[SD_MOVED])
+{
+  return sd_moved_far(s) > FAR;
 }

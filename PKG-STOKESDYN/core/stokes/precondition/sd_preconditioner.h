@@ -43,8 +43,9 @@ sd_status sd_preconditioner_apply(sd_preconditioner *p, const double *w, const d
 enum { SD_MOVED = 6 };
 void sd_moved_add(double sums[SD_MOVED], const double d[3], double a);
 
-/* Is that, root of the mean square, more than half of the radius, likewise? At that distance a
+/* That, root of the mean square, over the radius, likewise. Is it more than half? At that distance a
  * factor needs 21 iterations to 1e-6 instead of 17. */
+double sd_moved_far(const double sums[SD_MOVED]);
 int sd_moved_too_far(const double sums[SD_MOVED]);
 
 SD_END_C

@@ -1,0 +1,93 @@
+#include "films_factor.h"
+
+#include "lammps_compat.h"
+
+#include "atom.h"
+#include "domain.h"
+
+#include "sd_hash.h"
+#include "sd_preconditioner.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+namespace StokesDyn {
+
+/* The lattice, and a fingerprint of radii and viscosities */
+enum { EDGES = 6, PRINT = EDGES, SIZE, NUMBERS };
+
+/* Over the radius: in steps of a hundredth films always change too much (volume fractions from 0.3 on). */
+static const double FAR = 0.01;
+
+void FilmsFactor::find_numbers()
+{
+  const Lattice lattice = Lattice::of(domain);
+  const bool periodic = lattice.periodic[0] || lattice.periodic[1] || lattice.periodic[2];
+  const sd_spheres s = scene.local();
+  numbers.assign(NUMBERS, 0.0);
+  if (periodic) std::copy_n(lattice.h, EDGES, numbers.begin());
+  for (int k = 0; k < scene.size(); k++) {
+    const double row[2] = {s.a[k], s.w[k]};
+    sd_hash_add_row((uint64_t) scene.tag(k), row, 2, &numbers[PRINT]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &numbers[PRINT], 2, MPI_DOUBLE, MPI_SUM, world);
+}
+
+/* From where the factor was made to where the sphere is, to the next image */
+void FilmsFactor::moved(const double *place, int i, double d[3]) const
+{
+  for (int c = 0; c < 3; c++) d[c] = atom->x[i][c] - place[c];
+  Compat::minimum_image(domain, d);
+}
+
+/* Does the memory say where a factor of these spheres was made, and was that near? */
+bool FilmsFactor::known(const AtomRows &places, const std::vector<double> &made_of) const
+{
+  double sums[SD_MOVED + 1] = {0.0}, d[3];
+  for (int i : scene.who()) {
+    sums[SD_MOVED] += !places.has(i);
+    moved(places[i], i, d);
+    sd_moved_add(sums, d, atom->radius[i]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, SD_MOVED + 1, MPI_DOUBLE, MPI_SUM, world);
+  return sums[SD_MOVED] == 0.0 && sd_moved_far(sums) < FAR && made_of.size() == NUMBERS &&
+      std::equal(made_of.begin(), made_of.begin() + EDGES, numbers.begin()) &&
+      std::fabs(made_of[PRINT] - numbers[PRINT]) <= 1e-8 * numbers[SIZE];
+}
+
+void FilmsFactor::make_at(const AtomRows &places)
+{
+  const std::vector<double> then = scene.rows(3, [&](int i, double *out) {
+    double d[3];
+    moved(places[i], i, d);
+    for (int c = 0; c < 3; c++) out[c] = atom->x[i][c] - d[c];
+  });
+  const size_t of_bodies = SD_TIE_OF_BODY * (size_t) sd_bodies_count(&bodies.bodies);
+  std::vector<double> scratch(of_bodies + SD_TIE_OF_SPHERE * (size_t) scene.size() + 1);
+  bodies.films_at(then);
+  // where that fails it is made anew in the solve
+  sd_tie_make(&bodies.bodies, {scratch.data(), &scratch[of_bodies]});
+  bodies.films_back();
+}
+
+void FilmsFactor::recall(const AtomRows &places, const std::vector<double> &made_of)
+{
+  if (!bodies.films_by_places()) return forget();
+  find_numbers();
+  if (!known(places, made_of)) return;
+  if (!rows.is(scene.all_epochs().rows)) make_at(places);
+  bodies.bodies.tie->keep = 1;
+}
+
+void FilmsFactor::note(AtomRows &places, std::vector<double> &made_of)
+{
+  if (!bodies.films_by_places()) return;
+  rows.set(scene.all_epochs().rows);
+  if (!bodies.bodies.tie->anew) return;
+  made_of = numbers;
+  for (int i : scene.who()) std::copy_n(atom->x[i], 3, places.writable(i));
+}
+
+}    // namespace StokesDyn

@@ -1,0 +1,48 @@
+/* Where the factor of films is made (sd_tie_kept.h): at places that are rows of the memory, and those are
+ * taken anew where films have changed too much since, or spheres have moved so far that they will have, where
+ * a sphere has none, and where radii, viscosities or the box are others. So the same factor is there after a
+ * restart and on other ranks: where rows are of other spheres than in the last solve it is made once more at
+ * the places of then. */
+#ifndef SD_FILMS_FACTOR_H
+#define SD_FILMS_FACTOR_H
+
+#include "body_scene.h"
+#include "pointers.h"
+#include "rows_fix.h"
+#include "scene.h"
+
+#include <vector>
+
+namespace StokesDyn {
+
+class FilmsFactor : protected LAMMPS_NS::Pointers {
+ public:
+  FilmsFactor(LAMMPS_NS::LAMMPS *lmp, Scene &scene, BodyScene &bodies) :
+      Pointers(lmp), scene(scene), bodies(bodies)
+  {
+  }
+
+  /* Before a solve, on all ranks together: the bodies have been assembled. places: 3 numbers of an atom,
+   * where it stood when the factor was made; made_of: what else that was of. Both are the caller's to keep,
+   * and note() brings them up to date after the solve. */
+  void recall(const AtomRows &places, const std::vector<double> &made_of);
+  void note(AtomRows &places, std::vector<double> &made_of);
+  /* Another factor is made in between. */
+  void forget() { rows.never(); }
+
+ private:
+  Scene &scene;
+  BodyScene &bodies;
+  /* whose rows the factor is of */
+  Stamp rows;
+  /* that of now */
+  std::vector<double> numbers;
+
+  void find_numbers();
+  void moved(const double *place, int i, double d[3]) const;
+  bool known(const AtomRows &places, const std::vector<double> &made_of) const;
+  void make_at(const AtomRows &places);
+};
+
+}    // namespace StokesDyn
+#endif
