@@ -115,18 +115,29 @@ static void take_row(const sd_grid *g, long at, real *row, int n)
   }
 }
 
-/* Points of our lines of plane x, row by row of the pieces: added from them, or given to them. Our
- * own are in the brick, others in the message. */
-static inline void each_row(const sd_grid *g, int x, real *message,
-                            void (*visit)(const sd_grid *g, long at, real *row, int n))
+/* Points of our lines of plane x, two rows of a piece after the other where they are parts of one complex line: added
+ * from them, or given to them. Our own are in the brick, others in the message. */
+static inline void each_row(const sd_grid *g, int x, real *message, int to_brick)
 {
   for (int k = 0; k < g->ins; k++) {
     const sd_piece *p = g->in + k;
-    const int i = x - p->to[0];
+    const int i = x - p->to[0], first = p->to[1] - g->own[SD_SHARED_LINES][0];
     if (i < 0 || i >= p->n[0]) continue;
-    for (int j = 0; j < p->n[1]; j++)
-      visit(g, sd_grid_number(g->size[2], p->to[1] - g->own[SD_SHARED_LINES][0] + j, p->to[2]),
-            p->rank == g->me ? brick_row(g, p, i, j) : message_row(p, message, i, j), p->n[2]);
+    for (int j = 0, rows; j < p->n[1]; j += rows) {
+      const long at = sd_grid_number(g->size[2], first + j, p->to[2]);
+      real *row[2];
+      rows = at % 2 == 0 && j + 1 < p->n[1] ? 2 : 1;
+      for (int q = 0; q < rows; q++)
+        row[q] = p->rank == g->me ? brick_row(g, p, i, j + q) : message_row(p, message, i, j + q);
+      if (rows == 2) {
+        void *const line[3] = {(real *) g->plane[0] + at, (real *) g->plane[1] + at, (real *) g->plane[2] + at};
+        if (to_brick) g->kernels->take(row[0], row[1], p->n[2], line);
+        else g->kernels->add(row[0], row[1], p->n[2], line);
+      } else if (to_brick)
+        take_row(g, at, row[0], p->n[2]);
+      else
+        add_row(g, at, row[0], p->n[2]);
+    }
   }
 }
 
@@ -274,7 +285,7 @@ static sd_status forth(sd_grid *g, sd_grid_fill *fill, void *fill_ctx)
     if (fill)
       fill(fill_ctx, k, lines[0], lines[1], fields);
     else
-      each_row(g, k, second, add_row);
+      each_row(g, k, second, 0);
     for (int c = 0; c < 3; c++) {
       forth_along_z(g, c);
       if (g->columns == 1)
@@ -312,7 +323,7 @@ static sd_status back(sd_grid *g)
         copy_lines(g, c, k, first, 1);
       back_along_z(g, c);
     }
-    each_row(g, k, second, take_row);
+    each_row(g, k, second, 1);
   }
   return status;
 }

@@ -49,10 +49,13 @@ int sd_grid_pairs(const sd_grid *g);
 long sd_grid_slab_field(const sd_grid *g);
 
 /* Loops in vectors: between the transform of a complex line of n points and the first `waves` of those of its
- * real and of its imaginary part, a and b; join takes the others for 0. */
+ * real and of its imaginary part, a and b; join takes the others for 0. And between rows a and b of n points,
+ * three numbers each, and lines of three fields whose parts they are: added to these, or taken from them. */
 struct sd_grid_kernels {
   void (*part)(const void *both, int n, int waves, void *a, void *b);
   void (*join)(const void *a, const void *b, int n, int waves, void *both);
+  void (*add)(const void *a, const void *b, int n, void *const *line);
+  void (*take)(void *a, void *b, int n, void *const *line);
 };
 
 SD_KERNEL_TABLES(struct sd_grid_kernels, sd_grid);

@@ -117,8 +117,36 @@ static void join(const void *a_line, const void *b_line, int n, int waves, void 
     memset(z + 2 * end, 0, 2 * sizeof(real) * (size_t) (n - 2 * end + 1));
 }
 
+static void add_rows(const void *a_row, const void *b_row, int n, void *const *line)
+{
+  const real *restrict a = a_row, *restrict b = b_row;
+  real *restrict x = line[0], *restrict y = line[1], *restrict z = line[2];
+  for (int k = 0; k < n; k++) {
+    x[2 * k] += a[3 * k];
+    x[2 * k + 1] += b[3 * k];
+    y[2 * k] += a[3 * k + 1];
+    y[2 * k + 1] += b[3 * k + 1];
+    z[2 * k] += a[3 * k + 2];
+    z[2 * k + 1] += b[3 * k + 2];
+  }
+}
+
+static void take_rows(void *a_row, void *b_row, int n, void *const *line)
+{
+  real *restrict a = a_row, *restrict b = b_row;
+  const real *restrict x = line[0], *restrict y = line[1], *restrict z = line[2];
+  for (int k = 0; k < n; k++) {
+    a[3 * k] = x[2 * k];
+    b[3 * k] = x[2 * k + 1];
+    a[3 * k + 1] = y[2 * k];
+    b[3 * k + 1] = y[2 * k + 1];
+    a[3 * k + 2] = z[2 * k];
+    b[3 * k + 2] = z[2 * k + 1];
+  }
+}
+
 #ifdef SD_SINGLE
-const struct sd_grid_kernels SD_KERNELS(sd_grid_single) = {part, join};
+const struct sd_grid_kernels SD_KERNELS(sd_grid_single) = {part, join, add_rows, take_rows};
 #else
-const struct sd_grid_kernels SD_KERNELS(sd_grid) = {part, join};
+const struct sd_grid_kernels SD_KERNELS(sd_grid) = {part, join, add_rows, take_rows};
 #endif
