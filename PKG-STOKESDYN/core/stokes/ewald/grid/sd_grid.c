@@ -102,7 +102,7 @@ void sd_grid_free(sd_grid *g)
   free(g->before);
   free(g->slab);
   free(g->spare);
-  free(g->brick);
+  free(g->brick_memory);
   free(g->out);
   free(g->in);
   free(g->counts);
@@ -213,7 +213,9 @@ sd_status sd_grid_place(sd_grid *g, const int *bricks)
   if (!sd_grid_count_pieces(g, g->out, g->outs, PIECES_TO) || !sd_grid_count_pieces(g, g->in, g->ins, PIECES_FROM))
     return SD_ENOMEMORY;
   const size_t doubles = sd_grid_largest_message(g);
-  if (!sd_reserve(&g->brick, g->bytes, sd_grid_brick_numbers(g), &g->brick_room)) return SD_ENOMEMORY;
+  const size_t in_brick = sd_grid_brick_numbers(g) * g->bytes / sizeof(double) + 1;
+  g->brick = sd_reserve_lines(&g->brick_memory, in_brick, &g->brick_room);
+  if (!g->brick) return SD_ENOMEMORY;
   for (int k = 0; k < 2; k++)
     if (!sd_reserve(g->message + k, sizeof(double), doubles, g->message_room + k))
       return SD_ENOMEMORY;

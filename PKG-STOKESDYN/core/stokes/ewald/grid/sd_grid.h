@@ -72,10 +72,12 @@ typedef struct {
   size_t spare_room;
   /* FFTW's, of lines along z, y and x forth and back; along x [our z + 1] of so many lines, NULL: of none */
   void *z_forth, *z_back, *y_forth, *y_back, **x_forth, **x_back;
-  /* brick: first point and number of points; rows along z of 3 numbers a point */
+  /* brick: first point and number of points; rows along z of 3 numbers a point, each of which begins with a
+   * line of the cache */
   int lo[3], n[3];
   long row, layer;
   void *brick;
+  double *brick_memory;
   size_t brick_room;
   /* [occupied x] of each plane of x, NULL: none; three more planes at work */
   double *height;

@@ -256,32 +256,53 @@ INLINE void force_of_rows(int terms, const spreading *s, const windows *w, real 
   }
 }
 
+/* A vector that is as long as a line of the cache and begins anywhere takes as long to read as two that begin
+ * with lines. So of forces alone whole lines of the brick are read, the first of which begins `within` numbers
+ * before the window, and one more than there are vectors. (Spreading, which also writes, is slower so.) */
+#if defined(SD_AVX512) && !defined(SD_SINGLE)
+enum { IN_LINES = 1 };
+
+/* Lanes first ... first + LANES - 1 of two vectors */
+INLINE vec lanes_from(int first, vec a, vec b)
+{
+  const __m512i lanes = _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 6, 7);
+  return _mm512_permutex2var_pd(a, _mm512_add_epi64(_mm512_set1_epi64(first), lanes), b);
+}
+#else
+enum { IN_LINES = 0 };
+#define lanes_from(first, a, b) (a)
+#endif
+
 INLINE void gather_chunk(int terms, int vectors, const spreading *s, const windows *w,
                          const real *corner, real *S)
 {
-  const int points = s->points;
-  vec v[MOST_VECTORS][4];
-#pragma GCC unroll 6
-  for (int l = 0; l < vectors; l++)
+  const int points = s->points, lines = IN_LINES && terms == 1, all_vectors = vectors + lines;
+  const int within = lines ? (int) ((corner - s->brick) % LANES) : 0;
+  vec v[MOST_VECTORS + 1][4];
+  corner -= within;
+#pragma GCC unroll 7
+  for (int l = 0; l < all_vectors; l++)
     for (int t = 0; t < 4; t++) v[l][t] = all(0.0);
   for (int p = 0; p < points; p++) {
-    vec A[MOST_VECTORS][3];
-#pragma GCC unroll 6
-    for (int l = 0; l < vectors; l++) A[l][0] = A[l][1] = A[l][2] = all(0.0);
+    vec A[MOST_VECTORS + 1][3];
+#pragma GCC unroll 7
+    for (int l = 0; l < all_vectors; l++) A[l][0] = A[l][1] = A[l][2] = all(0.0);
 #pragma GCC unroll 4
     for (int q = 0; q < points; q++) {
       const real *row = corner + p * s->layer + q * s->row;
-#pragma GCC unroll 6
-      for (int l = 0; l < vectors; l++) {
+#pragma GCC unroll 7
+      for (int l = 0; l < all_vectors; l++) {
         const vec u = load_any(row + LANES * l);
         A[l][0] += all(w->value[1][q]) * u;
         if (turning(terms)) A[l][1] += all(w->first[1][q]) * u;
         if (unlike(terms)) A[l][2] += all(w->second[1][q]) * u;
       }
     }
-#pragma GCC unroll 6
-    for (int l = 0; l < vectors; l++) add_factors_of_y(terms, s, w, p, A[l], v[l]);
+#pragma GCC unroll 7
+    for (int l = 0; l < all_vectors; l++) add_factors_of_y(terms, s, w, p, A[l], v[l]);
   }
+#pragma GCC unroll 6
+  for (int l = 0; l < vectors && lines; l++) v[l][0] = lanes_from(within, v[l][0], v[l + 1][0]);
 #pragma GCC unroll 6
   for (int l = 0; l < vectors; l++)
 #pragma GCC unroll 4
