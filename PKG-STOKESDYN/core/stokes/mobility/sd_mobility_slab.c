@@ -121,11 +121,11 @@ static sd_status place(void *state, const sd_mobility_scene *scene)
 /* --- product --- */
 
 /* Sums over all spheres of F, z F and (z^2 + 2 A) F along the slab, A = a^2/6: [2][3]; and those of the rest */
-static sd_status slab_sums_of(slab *s, const double *F, double *sums)
+static sd_status slab_sums_of(slab *s, const double *F)
 {
   const sd_rank_spheres *here = &s->here;
   const int axis = s->slab.walls.wall->axis;
-  memset(sums, 0, 6 * sizeof(double));
+  double *sums = s->rest.means;
   sd_slab_rest_clear(&s->rest);
   for (int i = 0; i < here->own; i++) {
     const long j = here->sphere[i];
@@ -140,13 +140,12 @@ static sd_status slab_sums_of(slab *s, const double *F, double *sums)
     for (int d = 0; d < 3; d++) weighed[d] = here->spheres.w[j] * F[3 * j + d];
     sd_slab_rest_add(&s->rest, z, a, weighed);
   }
-  const sd_status status = sd_world_sum(&s->world, sums, 6);
-  return status == SD_OK ? sd_world_sum(&s->world, s->rest.sums, s->rest.numbers) : status;
+  return sd_world_sum(&s->world, s->rest.sums, s->rest.numbers);
 }
 
 /* The mean along the slab: that of the taller periodic box taken away, which has
  * -|d|/2 + Lz/12 + d^2/(2 Lz), and the walls' (sd_slab.h) put in; |d| stays. */
-static void add_means(const slab *s, const double *sums, double *u)
+static void add_means(const slab *s, double *u)
 {
   const sd_rank_spheres *here = &s->here;
   const sd_slab_walls *walls = &s->slab.walls;
@@ -158,7 +157,7 @@ static void add_means(const slab *s, const double *sums, double *u)
     const long j = here->sphere[i];
     const double a = here->spheres.a[j], z = s->height[i], square = z * z + a * a / 3.0;
     for (int d = 0; d < 2; d++) {
-      const double *S = sums + 3 * d;
+      const double *S = s->rest.means + 3 * d;
       double v = -Lz / 12.0 * S[0] - (square * S[0] - 2.0 * z * S[1] + S[2]) / (2.0 * Lz);
       if (walls->kind != SD_SLAB_LAYER) v += 0.5 * (z * S[0] + S[1]);
       if (walls->kind == SD_SLAB_SLIT) v -= z * S[1] / H;
@@ -185,12 +184,11 @@ static sd_status slab_apply(void *state, const double *F, double *u)
 {
   slab *s = state;
   sd_rank_spheres *here = &s->here;
-  double sums[6];
   if (!(s->slab.ewald.count > 0.0)) {
     memset(u, 0, 3 * sizeof(double) * (size_t) s->here.n);
     return SD_OK;
   }
-  sd_status status = slab_sums_of(s, F, sums);
+  sd_status status = slab_sums_of(s, F);
   if (status == SD_OK) status = sd_rank_spheres_refresh(here, &s->world, F);
   if (status == SD_OK) status = sd_ewald_pairs_load(&s->pairs, here->n, F, here->ghosts, &s->world, NULL);
   if (status != SD_OK) return status;
@@ -201,7 +199,7 @@ static sd_status slab_apply(void *state, const double *F, double *u)
   sd_ewald_pairs_take(&s->pairs, here->n, F, rows, NULL, NULL, u);
   for (int w = 0; w < sd_slab_many_walls(&s->slab.walls); w++)
     sd_ewald_image_pairs_apply(s->images + w, here->n, F, here->ghosts, u);
-  add_means(s, sums, u);
+  add_means(s, u);
   add_rest(s, u);
   return SD_OK;
 }

@@ -8,7 +8,7 @@
 #include "sd_radial.h"
 
 /* Orders of b that pairs have; forces and flows: with and without b */
-enum { ORDERS = 3, SIDES = 2 };
+enum { ORDERS = 3, SIDES = 2, MEANS = 6 };
 
 void sd_slab_rest_free(sd_slab_rest *r)
 {
@@ -74,11 +74,12 @@ sd_status sd_slab_rest_create(sd_slab_rest *r, const sd_slab *slab)
   const size_t planes = (size_t) slab->ewald.slab.planes;
   sd_slab_rest_free(r);
   r->slab = *slab;
-  r->numbers = (int) planes * SIDES * 3;
+  r->numbers = (int) planes * SIDES * 3 + MEANS;
   r->tail = calloc(2 * ORDERS * planes, sizeof(double));
-  r->sums = calloc(planes * SIDES * 3, sizeof(double));
+  r->sums = calloc((size_t) r->numbers, sizeof(double));
   r->flow = calloc(planes * SIDES * 3, sizeof(double));
   if (!r->tail || !r->sums || !r->flow) return SD_ENOMEMORY;
+  r->means = r->sums + planes * SIDES * 3;
   fill_tail(r);
   return SD_OK;
 }
@@ -118,7 +119,7 @@ void sd_slab_rest_sum(sd_slab_rest *r)
   const sd_ewald *e = &r->slab.ewald;
   const int planes = e->slab.planes, across = e->slab.across;
   const double over = e->box.edge[across] / sd_ewald_volume(&e->box);
-  memset(r->flow, 0, sizeof(double) * (size_t) r->numbers);
+  memset(r->flow, 0, sizeof(double) * (size_t) planes * SIDES * 3);
   for (int i = 0; i < planes; i++)
     for (int j = 0; j < planes; j++)
       for (int d = 0; d < 3; d++) {

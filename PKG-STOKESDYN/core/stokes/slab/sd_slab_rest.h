@@ -15,12 +15,12 @@ SD_BEGIN_C
 /* Zero-initialise; sd_slab_rest_free in the end. */
 typedef struct {
   sd_slab slab;
-  /* numbers of sums, which ranks add up */
+  /* numbers of sums, which ranks add up: with six of the caller's, `means`, that go by the same message */
   int numbers;
   /* C by difference of planes: [along, across][3][planes] */
   double *tail;
   /* [planes][2][3] sums of F and of b F; flow that goes with 1 and with b */
-  double *sums, *flow;
+  double *sums, *means, *flow;
 } sd_slab_rest;
 
 /* SD_OK or SD_ENOMEMORY */

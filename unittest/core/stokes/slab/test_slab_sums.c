@@ -83,11 +83,44 @@ static void a_lone_sphere_above_a_floor_is_that_of_dpstokes(void **state)
   }
 }
 
+static int sums_asked;
+
+static sd_status count_sums(void *ctx, double *values, int count)
+{
+  (void) ctx, (void) values, (void) count;
+  sums_asked++;
+  return SD_OK;
+}
+
+/* All that a product needs of all ranks goes by one message. */
+static void a_product_asks_ranks_for_one_sum(void **state)
+{
+  (void) state;
+  const sd_wall ground = {2, 1, 0.0};
+  const sd_slab_walls walls = sd_slab_floor(&ground);
+  const sd_ewald_box box = slab_box(2, 30.0, 25.0);
+  const double x[6] = {0.1, 0.2, 2.3, 4.0, 1.5, 6.1}, a[2] = {0.7, 1.4}, F[6] = {1.3, -0.4, 0.6, 0.2, 0.9, -1.1};
+  double u[6], alone[6];
+  slab s;
+  slab_place(&s, &walls, &box, x, a, 2, 1e-4);
+  assert_int_equal(sd_mobility_apply(&s.omega, F, alone), SD_OK);
+  const sd_mobility_scene asking = {.how = {.law = {.tensor = SD_TENSOR_RPY}, .width = 3, .slab = &s.slab},
+                                    .n = 2, .n_all = s.n_all, .spheres = {s.x, s.a, s.w},
+                                    .world = {.ctx = &s, .refresh = slab_refresh, .sum = count_sums}};
+  assert_int_equal(sd_mobility_place(&s.omega, &sd_mobility_slab, &asking), SD_OK);
+  sums_asked = 0;
+  assert_int_equal(sd_mobility_apply(&s.omega, F, u), SD_OK);
+  assert_int_equal(sums_asked, 1);
+  for (int i = 0; i < 6; i++) CHECK_NEAR(u[i], alone[i], 0.0);
+  slab_free(&s);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(velocities_are_those_of_dense_sums),
       cmocka_unit_test(a_lone_sphere_above_a_floor_is_that_of_dpstokes),
+      cmocka_unit_test(a_product_asks_ranks_for_one_sum),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
