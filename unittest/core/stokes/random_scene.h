@@ -16,9 +16,9 @@
 
 #include "sd_multiblob.h"
 
-typedef enum { EQUAL, ANY, TWO_SIZES, FEW_LARGE, SHELLS, KINDS } kind;
+typedef enum { EQUAL, MANY_SIZES, TWO_SIZES, FEW_LARGE, SHELLS, KINDS } kind;
 typedef enum { CUBE, OBLONG, OBLIQUE, OPEN, ABOVE_WALL, LAYER, FLOOR, SLIT, PLACES } place;
-static const char *const kinds[] = {"equal", "any", "two sizes", "few large", "shells"};
+static const char *const kinds[] = {"equal", "many sizes", "two sizes", "few large", "shells"};
 static const char *const places[] = {"cube", "oblong", "oblique", "open", "wall", "layer", "floor", "slit"};
 /* Where the spheres stand in it: evenly, in clusters that overlap, or on one plane across a random axis */
 typedef enum { EVEN, CLUSTERS, PLANE, SPREADS } spread;
@@ -45,7 +45,7 @@ static inline void draw_radii(scene *s, uint64_t *seed)
   const double share = uniform(seed, 0.05, 0.9);
   const int few = 1 + (int) uniform(seed, 0, 0.02 * s->n);
   for (int i = 0; i < s->n; i++)
-    s->a[i] = s->kind == ANY     ? log_uniform(seed, 1.0, s->ratio)
+    s->a[i] = s->kind == MANY_SIZES ? log_uniform(seed, 1.0, s->ratio)
         : s->kind == TWO_SIZES   ? (i < share * s->n ? s->ratio : 1.0)
         : s->kind == FEW_LARGE   ? (i < few ? s->ratio : 1.0)
         : s->kind == SHELLS      ? s->shell.point
@@ -63,6 +63,7 @@ static inline void draw_box(scene *s, uint64_t *seed)
   const double unit = cbrt(V / (shape[0] * shape[1] * shape[2]));
   s->box.periodic = s->place != OPEN && s->place != ABOVE_WALL;
   for (int d = 0; d < 3; d++) s->box.edge[d] = shape[d] * unit;
+  if (s->place == SLIT) s->box.edge[2] = fmax(s->box.edge[2], 2.0 * s->ratio); /* the largest fit into it */
   for (int d = 0; d < 3 && s->place == OBLIQUE; d++)
     s->box.tilt[d] = uniform(seed, -0.5, 0.5) * s->box.edge[d > 1];
 }

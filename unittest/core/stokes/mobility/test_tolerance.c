@@ -1,16 +1,22 @@
 /* Errors of products in random scenes that once were above the tolerance, and why; more scenes: bench_tolerance. */
 #include "random_scene.h"
 
-/* Number k of those of a seed, among scenes of at most 400 spheres that stand evenly, at 1e-1 to 1e-12 */
-static void keeps_the_tolerance(uint64_t seed, int k)
+/* Number k of those of a seed */
+static void keeps_it(uint64_t seed, int k, const wish *w)
 {
-  const wish any = {.most = 400, .kind = -1, .place = -1, .loosest = 1, .tightest = 12};
-  scene s = random_scene(seed, k, &any);
+  scene s = random_scene(seed, k, w);
   const errors_over_tolerance e = errors_of(&s);
   if (getenv("STOKESDYN_SHOW"))
     printf("%s, %s: U %.2f W %.2f weights %.2f\n", kinds[s.kind], places[s.place], e.U, e.W, e.weights);
   assert_true(e.U < 1.0 && e.W < 1.0 && e.weights < 1.0 && e.spheres < 1.0);
   scene_release(&s);
+}
+
+/* Among scenes of at most 400 spheres that stand evenly, at 1e-1 to 1e-12 */
+static void keeps_the_tolerance(uint64_t seed, int k)
+{
+  const wish any = {.most = 400, .kind = -1, .place = -1, .loosest = 1, .tightest = 12};
+  keeps_it(seed, k, &any);
 }
 
 /* 1.13 to 1.22: small spheres feel beyond the range that the others are large. */
@@ -52,6 +58,27 @@ static void images_of_large_spheres_in_a_slit(void **state)
   keeps_the_tolerance(48601, 56);
 }
 
+/* 2.10 and 1.18 under weights in clusters above a wall of an open box: heights multiply what windows mistake of short
+ * waves of images. */
+static void short_waves_of_images_above_a_wall(void **state)
+{
+  (void) state;
+  const wish unlike = {.most = 120, .kind = MANY_SIZES, .place = -1, .spread = CLUSTERS, .loosest = 1, .tightest = 12};
+  keeps_it(48752, 48, &unlike);
+  keeps_it(48752, 331, &unlike);
+}
+
+/* 1.02 and 1.30 in slits: spheres on one plane have the same place on the grid across it, and errors of their windows
+ * add up under equal forces. */
+static void what_windows_mistake_of_spheres_on_one_plane(void **state)
+{
+  (void) state;
+  const wish any = {.most = 120, .kind = -1, .place = -1, .spread = -1, .loosest = 1, .tightest = 12};
+  const wish slit = {.most = 100, .kind = EQUAL, .place = SLIT, .spread = PLANE, .loosest = 1, .tightest = 12};
+  keeps_it(48752, 193, &any);
+  keeps_it(48902, 4, &slit);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -60,6 +87,8 @@ int main(void)
       cmocka_unit_test(what_windows_mistake_of_a_common_flow),
       cmocka_unit_test(spins_of_points_that_overlap),
       cmocka_unit_test(images_of_large_spheres_in_a_slit),
+      cmocka_unit_test(short_waves_of_images_above_a_wall),
+      cmocka_unit_test(what_windows_mistake_of_spheres_on_one_plane),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -91,10 +91,10 @@ static void split(sd_ewald *e, const splitting *by, double *near)
     *near = fmin(t, sd_splitting_beyond(e, by, *near));
   }
   e->points = sd_splitting_points_of(by, e->tolerance, e->xi * y, t) + by->tall;
-  e->beta = sd_splitting_beta(e, by) * e->points;
+  e->beta = sd_splitting_beta(by) * e->points;
   e->spacing = sd_splitting_spacing(e, by, *near, y);
   while (by->fall == BAND && e->points < SD_WINDOW_MOST_POINTS && sd_splitting_common_flow(e) > COMMON * e->tolerance)
-    e->beta = sd_splitting_beta(e, by) * ++e->points;
+    e->beta = sd_splitting_beta(by) * ++e->points;
   e->reach = e->range;
 }
 
@@ -165,7 +165,7 @@ static void widen_windows(sd_ewald *e, const splitting *by)
   const int more = e->points + (int) rint(4.0 * log10(e->spacing / finest)), room = fewest - 2;
   const int most = room < SD_WINDOW_MOST_POINTS ? room : SD_WINDOW_MOST_POINTS;
   e->points = more < most ? more : most;
-  e->beta = sd_splitting_beta(e, by) * e->points;
+  e->beta = sd_splitting_beta(by) * e->points;
 }
 
 static sd_status level_of(sd_ewald *e, const splitting *by)
@@ -175,6 +175,7 @@ static sd_status level_of(sd_ewald *e, const splitting *by)
   const sd_status status = sd_ewald_lay_grid(&e->box, e->spacing, e->points, &e->spacing, e->grid);
   if (status == SD_OK && by->fall == BAND && !by->equal && e->box.periodic) widen_windows(e, by);
   if (status == SD_OK && by->fall == BAND) end_at_band(e, by, near);
+  if (status == SD_OK && by->fall == BAND) sd_splitting_fit_planes(e, by);
   return status;
 }
 
@@ -396,6 +397,7 @@ sd_status sd_ewald_choose_in_slab(const sd_ewald_box *box, int across, double sp
     status = SD_OK;
     memcpy(out, &one, sizeof(one));
   }
+  if (status == SD_OK) sd_splitting_fit_planes(out, &by);
   return status;
 }
 

@@ -1,6 +1,7 @@
 #include "sd_ewald_splitting_internal.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "sd_constants.h"
 #include "sd_window.h"
@@ -194,15 +195,14 @@ int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, d
 }
 
 /* Of the window over its points: where it is differentiated its jump at the ends must be smaller; twice for
- * unlike radii. With the points that windows have for heights above a wall that jump is far below the tolerance,
- * and short waves, which heights multiply, are mistaken less with a smaller beta. */
-double sd_splitting_beta(const sd_ewald *e, const splitting *by)
+ * unlike radii. Above a wall of an open box windows have more points, so that the jump is far below the tolerance; and
+ * what they mistake of short waves, which a smaller beta makes less, is multiplied by heights. */
+double sd_splitting_beta(const splitting *by)
 {
   if (equal_turn(by)) return 2.3;
   if (by->five) return 2.5;
-  const double heights = by->at_wall ? 0.016 * fmax(0.0, e->points - 10.0) : 0.0;
-  if (by->fall == BAND ? !by->equal : by->slopes) return 2.42 - heights;
-  return 2.25;
+  if (by->at_wall) return 2.25;
+  return (by->fall == BAND ? !by->equal : by->slopes) ? 2.42 : 2.25;
 }
 
 /* Windows of five points stand in one vector of floats, and those of six in two. The loss by large spheres above is for
@@ -234,4 +234,92 @@ double sd_splitting_common_flow(const sd_ewald *e)
   const double edge = cbrt(sd_ewald_volume(&e->box)), over = e->beta / e->points;
   const double alias = sinh(e->beta) / e->beta * e->points * sqrt(SD_PI * SD_PI - over * over);
   return 17.0 / alias * e->count * e->a_ref * e->spacing / (edge * edge);
+}
+
+/* --- spheres on one plane --- */
+
+/* sd_window_transform, times a constant */
+static double wave_of_window(const sd_ewald *e, double theta)
+{
+  const double half = 0.5 * theta * e->points, square = e->beta * e->beta - half * half, root = sqrt(fabs(square));
+  return root < 1e-6 ? 1.0 : (square > 0.0 ? sinh(root) : sin(root)) / root;
+}
+
+/* A sphere's window has the aliases theta - 2 pi and theta + 2 pi beside a wave theta = k h, at most where it stands on
+ * a plane of the grid. A constant and a parabola take away what they are at theta = 0, and their second derivative. */
+static double aliases(const sd_ewald *e, double theta)
+{
+  return wave_of_window(e, theta - 2.0 * SD_PI) + wave_of_window(e, theta + 2.0 * SD_PI);
+}
+
+static double bend_at(const sd_ewald *e, double theta, double (*f)(const sd_ewald *, double))
+{
+  const double step = 0.05;
+  return (f(e, theta + step) - 2.0 * f(e, theta) + f(e, theta - step)) / (step * step);
+}
+
+static double bend_of_window(const sd_ewald *e, double theta)
+{
+  return bend_at(e, theta, wave_of_window);
+}
+
+/* Where N equal spheres under equal forces stand on one plane of area S, waves across it add up in all of them, and so
+ * does what both windows mistake of these, w: over F/(6 pi eta a) it is
+ *   12 a N/S sum H/k^2 (aliases(kh) - c w(kh) - d w''(kh))/w(kh) dk,   k = dk, 2 dk ..., dk = 2 pi over the period
+ * c and d so that the bracket is 0 at k = 0, and for a parabola its second derivative, too; H of sd_radial.h. */
+static double mistaken_of_plane(const sd_ewald *e, double spheres_over_area, double h, double first, double dk)
+{
+  const double a = e->largest, K = e->band;
+  const double w0 = wave_of_window(e, 0.0), w2 = bend_of_window(e, 0.0), w4 = bend_at(e, 0.0, bend_of_window);
+  const double a0 = aliases(e, 0.0), a2 = bend_at(e, 0.0, aliases);
+  const double parabola = e->slab.planes == 0 ? 1.0 : 0.0; /* sd_ewald_waves.c */
+  const double d = parabola * (a2 * w0 - a0 * w2) / (w4 * w0 - w2 * w2), c = (a0 - d * w2) / w0;
+  double sum = 0.0;
+  for (double k = first; k < K; k += dk) {
+    const double k2 = k * k, theta = k * h, w = wave_of_window(e, theta);
+    const double x = e->range * k2 / (K + sqrt(K * K - k2)), H = (1.0 + x - a * a * k2 / 3.0) * exp(-x);
+    sum += H / k2 * (aliases(e, theta) - c * w - d * bend_of_window(e, theta)) / w * dk;
+  }
+  return 12.0 * a * spheres_over_area * fabs(sum);
+}
+
+/* The largest of planes along two edges of the box, with all spheres or as many as have room there without overlap.
+ * Many waves are an integral. */
+static double most_on_planes(const sd_ewald *e)
+{
+  enum { MANY = 40 };
+  const double densest = 1.0 / (sqrt(12.0) * e->largest * e->largest);
+  double wave[3][3], most = 0.0;
+  sd_ewald_reciprocal(&e->box, wave);
+  for (int d = 0; d < 3; d++) {
+    const double q = hypot(wave[d][0], hypot(wave[d][1], wave[d][2])), period = 2.0 * SD_PI / q;
+    const double spheres = fmin(densest, e->count * period / sd_ewald_volume(&e->box));
+    const double h = e->box.periodic ? period / e->grid[d] : e->spacing;
+    const int few = e->box.periodic && e->band < MANY * q;
+    const double dk = few ? q : e->band / MANY;
+    most = fmax(most, mistaken_of_plane(e, spheres, h, few ? q : 0.5 * dk, dk));
+  }
+  return most;
+}
+
+/* Errors of random forces add to it. A smaller beta mistakes short waves less and long ones more, whose signs differ,
+ * and more at the ends of the window, where it is 1/I_0(beta) = exp(-beta) sqrt(2 pi beta): of those with which this is
+ * no more than at the tightest tolerances, the one that leaves least. */
+static const double ON_A_PLANE = 0.5, AT_THE_ENDS = 0.25;
+
+void sd_splitting_fit_planes(sd_ewald *e, const splitting *by)
+{
+  if (!by->equal || e->a_ref != e->largest) return;
+  double least = most_on_planes(e);
+  if (least <= ON_A_PLANE * e->tolerance) return;
+  sd_ewald other;
+  memcpy(&other, e, sizeof(other));
+  for (int k = 1; k < 3; k++) {
+    other.beta *= 0.99;
+    if (exp(-other.beta) * sqrt(2.0 * SD_PI * other.beta) > AT_THE_ENDS * e->tolerance) break;
+    const double left = most_on_planes(&other);
+    if (left >= least) continue;
+    least = left;
+    e->beta = other.beta;
+  }
 }

@@ -50,7 +50,11 @@ double sd_splitting_gaussian_spacing(double xi, double y);
 /* The window: its points, and beta over these */
 int sd_splitting_points(double t);
 int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, double t);
-double sd_splitting_beta(const sd_ewald *e, const splitting *by);
+double sd_splitting_beta(const splitting *by);
+
+/* Of e, whose grid is laid: a smaller beta where equal spheres on one plane, as many as have room there,
+ * would have more than half of the tolerance in common. Points, grid and range stay. */
+void sd_splitting_fit_planes(sd_ewald *e, const splitting *by);
 
 /* Where the rule asks for six points: would five do, and what came of these, is it within the tolerance? */
 int sd_splitting_five_may_do(const sd_ewald *e, const splitting *by);
