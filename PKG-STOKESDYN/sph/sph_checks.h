@@ -3,13 +3,13 @@
 #ifndef SD_SPH_CHECKS_H
 #define SD_SPH_CHECKS_H
 
-#include "sph_rows.h"
+#include "sph_part.h"
 
 namespace StokesDyn {
 
-class SphChecks : protected LAMMPS_NS::Pointers {
+class SphChecks : public SphPart {
  public:
-  SphChecks(const SphCoefficients &settings, const SphRoles &roles, SphRows &rows, GhostExchange &ghosts);
+  using SphPart::SphPart;
 
   /* Before any sum; and of bodies, after the first force, which has made the pressures */
   void look_at_beginning();
@@ -18,12 +18,6 @@ class SphChecks : protected LAMMPS_NS::Pointers {
   double growth_limit(int bits) const;
 
  private:
-  const SphCoefficients &settings;
-  const SphRoles &roles;
-  SphRows &rows;
-  GhostExchange &ghosts;
-  const Voice &voice;
-
   void look_at_sound();
   void look_at_widths();
   void look_at_plane();

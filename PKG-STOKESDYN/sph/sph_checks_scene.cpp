@@ -20,13 +20,6 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-SphChecks::SphChecks(const SphCoefficients &settings, const SphRoles &roles, SphRows &rows,
-                     GhostExchange &ghosts) :
-    Pointers(settings.voice.lmp), settings(settings), roles(roles), rows(rows), ghosts(ghosts),
-    voice(settings.voice)
-{
-}
-
 void SphChecks::look_at_beginning()
 {
   look_at_sound();

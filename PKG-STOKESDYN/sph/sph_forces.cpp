@@ -14,8 +14,7 @@ using namespace StokesDyn;
 
 SphForces::SphForces(const SphCoefficients &settings, const SphRoles &roles, SphRows &rows, const SphMiddle &middle,
                      SphViscosities &viscosities, GhostExchange &ghosts) :
-    Pointers(settings.voice.lmp), settings(settings), roles(roles), rows(rows), middle(middle),
-    viscosities(viscosities), ghosts(ghosts)
+    SphPart(settings, roles, rows, ghosts), middle(middle), viscosities(viscosities)
 {
 }
 
@@ -120,11 +119,11 @@ void SphForces::coincident()
     for (int m = 0; m < rows.pairs.count[i]; m++) {
       const int j = rows.pairs.neighbor[i][m] & rows.pairs.mask;
       if (memcmp(atom->x[i], atom->x[j], 3 * sizeof(double)) == 0)
-        settings.voice.at_step().fail_one("atoms " + std::to_string(atom->tag[i]) + " and " +
+        voice.at_step().fail_one("atoms " + std::to_string(atom->tag[i]) + " and " +
                                           std::to_string(atom->tag[j]) + " are at one place");
     }
   }
-  settings.voice.at_step().fail_one("two atoms are at one place");
+  voice.at_step().fail_one("two atoms are at one place");
 }
 
 void SphForces::rub_implicitly(double tau)

@@ -7,7 +7,7 @@
 
 namespace StokesDyn {
 
-class SphForces : protected LAMMPS_NS::Pointers {
+class SphForces : public SphPart {
  public:
   SphForces(const SphCoefficients &settings, const SphRoles &roles, SphRows &rows, const SphMiddle &middle,
             SphViscosities &viscosities, GhostExchange &ghosts);
@@ -29,12 +29,8 @@ class SphForces : protected LAMMPS_NS::Pointers {
   double bytes() const;
 
  private:
-  const SphCoefficients &settings;
-  const SphRoles &roles;
-  SphRows &rows;
   const SphMiddle &middle;
   SphViscosities &viscosities;
-  GhostExchange &ghosts;
   bool measured = false;
   SphNeighbours of_flow;
   Rows f4, own, rubs;

@@ -3,14 +3,14 @@
 #ifndef SD_SPH_MIDDLE_H
 #define SD_SPH_MIDDLE_H
 
-#include "sph_rows.h"
+#include "sph_part.h"
 #include "sph_scheme.h"
 
 namespace StokesDyn {
 
-class SphMiddle : protected LAMMPS_NS::Pointers {
+class SphMiddle : public SphPart {
  public:
-  SphMiddle(const SphCoefficients &settings, const SphRoles &roles, SphRows &rows, GhostExchange &ghosts);
+  using SphPart::SphPart;
 
   /* a new run */
   void begin(const SphScheme &scheme);
@@ -24,11 +24,6 @@ class SphMiddle : protected LAMMPS_NS::Pointers {
   double bytes() const;
 
  private:
-  const SphCoefficients &settings;
-  const SphRoles &roles;
-  SphRows &rows;
-  GhostExchange &ghosts;
-  const Voice &voice;
   SphScheme scheme = {};
   SphNeighbours around;
   LAMMPS_NS::bigint around_of = -1;    // the step of the list that `around` is made of

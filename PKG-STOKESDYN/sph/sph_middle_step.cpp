@@ -18,13 +18,6 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-SphMiddle::SphMiddle(const SphCoefficients &settings, const SphRoles &roles, SphRows &rows,
-                     GhostExchange &ghosts) :
-    Pointers(settings.voice.lmp), settings(settings), roles(roles), rows(rows), ghosts(ghosts),
-    voice(settings.voice)
-{
-}
-
 void SphMiddle::begin(const SphScheme &of)
 {
   scheme = of;

@@ -9,12 +9,6 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-SphViscosities::SphViscosities(const SphCoefficients &settings, const SphRoles &roles, SphRows &rows,
-                               GhostExchange &ghosts) :
-    Pointers(settings.voice.lmp), settings(settings), roles(roles), rows(rows), ghosts(ghosts)
-{
-}
-
 void SphViscosities::find()
 {
   const std::vector<double> rates = settings.is_newtonian() ? std::vector<double>(atom->nlocal) : shear_rates();
@@ -77,7 +71,7 @@ void SphViscosities::rub_implicitly(double tau, Rows &F)
       sd_sph_rub_implicitly(&all, nlocal ? atom->v[0] : nullptr, nlocal ? atom->vest[0] : nullptr,
                             nlocal ? atom->f[0] : nullptr, F.data(), scratch.data(), &steps);
   if (status != SD_OK)
-    settings.voice.at_step().fail("keyword implicit: conjugate gradients stopped after " + std::to_string(steps) +
+    voice.at_step().fail("keyword implicit: conjugate gradients stopped after " + std::to_string(steps) +
                                   " steps: " + sd_status_string(status) + "; use a smaller time step");
 }
 

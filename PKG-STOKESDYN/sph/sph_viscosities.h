@@ -2,14 +2,13 @@
 #ifndef SD_SPH_VISCOSITIES_H
 #define SD_SPH_VISCOSITIES_H
 
-#include "sph_rows.h"
+#include "sph_part.h"
 
 namespace StokesDyn {
 
-class SphViscosities : protected LAMMPS_NS::Pointers {
+class SphViscosities : public SphPart {
  public:
-  SphViscosities(const SphCoefficients &settings, const SphRoles &roles, SphRows &rows,
-                 GhostExchange &ghosts);
+  using SphPart::SphPart;
 
   /* Of a step, where each particle has its own; x4 and v4 are packed. */
   void find();
@@ -23,10 +22,6 @@ class SphViscosities : protected LAMMPS_NS::Pointers {
   double bytes() const;
 
  private:
-  const SphCoefficients &settings;
-  const SphRoles &roles;
-  SphRows &rows;
-  GhostExchange &ghosts;
   std::vector<double> viscosities, inertia;
   Rows scratch;
   std::vector<double> shear_rates();

@@ -3,25 +3,21 @@
 #ifndef SD_SPH_WALLS_H
 #define SD_SPH_WALLS_H
 
-#include "sph_rows.h"
+#include "sph_part.h"
 
 #include <string>
 
 namespace StokesDyn {
 
-class SphWalls : protected LAMMPS_NS::Pointers {
+class SphWalls : public SphPart {
  public:
-  SphWalls(const SphCoefficients &settings, const SphRoles &roles, SphRows &rows, GhostExchange &ghosts);
+  using SphPart::SphPart;
 
   /* Density and vest of all of them, from the pressures of the fluid; then all pressures are those of now. */
   void follow();
   double bytes() const;
 
  private:
-  const SphCoefficients &settings;
-  const SphRoles &roles;
-  SphRows &rows;
-  GhostExchange &ghosts;
   Rows spins;
   std::vector<double> wall_rows;
 

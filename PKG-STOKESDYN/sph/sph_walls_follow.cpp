@@ -18,12 +18,6 @@
 using namespace LAMMPS_NS;
 using namespace StokesDyn;
 
-SphWalls::SphWalls(const SphCoefficients &settings, const SphRoles &roles, SphRows &rows,
-                   GhostExchange &ghosts) :
-    Pointers(settings.voice.lmp), settings(settings), roles(roles), rows(rows), ghosts(ghosts)
-{
-}
-
 /* Their density becomes the one that has this pressure, so ghosts get it like any other density. The velocity
  * travels as the difference to v, which ghosts have. */
 void SphWalls::follow()
