@@ -59,6 +59,18 @@ bool stands_behind(const Guest &guest, const char *style)
   return false;
 }
 
+tagint first_moved(LAMMPS *lmp, const std::string &styles, const std::function<bool(int)> &takes_part)
+{
+  int moved = 0, given = 0;
+  for (int k = 0; k < lmp->modify->nfix; k++) {
+    const Fix *fix = lmp->modify->fix[k];
+    if (fits(styles, plain_style(fix->style))) given |= fix->groupbit;
+    else if (fix->time_integrate) moved |= fix->groupbit;
+  }
+  const int *mask = lmp->atom->mask;
+  return first_atom(lmp, [&](int i) { return (mask[i] & moved) && !(mask[i] & given) && takes_part(i); });
+}
+
 bool runs_back(const Guest &guest, std::string &says)
 {
   says = text(guest.lmp->update->dt);

@@ -80,6 +80,11 @@ bool fits(const std::string &styles, const std::string &style);
 /* Does the guest, a fix, stand in the input behind one of this style? */
 bool stands_behind(const Guest &guest, const char *style);
 
+/* The lowest ID of the atoms that take part and that a fix integrates, but that are in the group of no fix of
+ * these styles, which give them a motion or a force or hold them; 0: there is none. The same on all ranks. */
+LAMMPS_NS::tagint first_moved(LAMMPS_NS::LAMMPS *lmp, const std::string &styles,
+                              const std::function<bool(int)> &takes_part);
+
 /* Is the time step below 0? says: what it is */
 bool runs_back(const Guest &guest, std::string &says);
 

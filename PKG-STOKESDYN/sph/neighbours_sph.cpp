@@ -51,9 +51,10 @@ static bool stands_before_grains(const Guest &guest, std::string &says)
 
 // --- the table -----------------------------------------------------------------------------------
 
+using N = Neighbour;
+
 const std::vector<Neighbour> &sph_neighbours()
 {
-  using N = Neighbour;
   static const std::vector<Neighbour> table = {
       // another density, another pressure
       {N::PAIR, "sph/rhosum sph/taitwater* sph/idealgas sph/lj rheo*", 0, N::ERROR,

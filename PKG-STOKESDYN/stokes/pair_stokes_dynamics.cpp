@@ -248,18 +248,10 @@ void PairStokesDynamics::look_at_neighbours()
  * fix move have a given velocity, and others may be held. */
 void PairStokesDynamics::warn_of_undragged(const std::vector<char> &chosen, int dragged)
 {
-  int moved = 0, given = 0;
-  for (int k = 0; k < modify->nfix; k++) {
-    const Fix *fix = modify->fix[k];
-    const std::string style = plain_style(fix->style);
-    if (style == "move" || style == "setforce" || style == "freeze") given |= fix->groupbit;
-    else if (fix->time_integrate) moved |= fix->groupbit;
-  }
-  const int *mask = atom->mask;
-  const tagint first = first_atom(lmp, [&](int i) {
-    return chosen[i] && (mask[i] & moved) && !(mask[i] & (dragged | given));
-  });
-  if (!first || warned_undragged) return;
+  if (warned_undragged) return;
+  const tagint first = first_moved(lmp, "move setforce freeze",
+                                   [&](int i) { return chosen[i] && !(atom->mask[i] & dragged); });
+  if (!first) return;
   warned_undragged = true;
   voice.warn("atom " + std::to_string(first) + " takes part and is moved, but no fix stokes_dynamics applies its "
              "force: others feel it, and it feels no fluid; give that fix all spheres that take part, or keyword "

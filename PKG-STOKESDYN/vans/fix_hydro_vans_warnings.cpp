@@ -1,15 +1,12 @@
 /* Of fix hydro/vans: what a run may not do as one thinks, said once. */
 #include "fix_hydro_vans.h"
 
-#include "fixes.h"
 #include "gravity.h"
 #include "neighbours_vans.h"
-#include "ranks.h"
 #include "sd_sphere.h"
 
 #include "atom.h"
 #include "comm.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -44,18 +41,9 @@ void FixHydroVans::tell_weight()
   const double *g = set.law.g;
   const bool lifts = g[1] != 0.0 || g[2] != 0.0 || (set.law.rest && g[0] != 0.0);
   if (stream.told.has(VansTold::WEIGHT) || !set.has_grains() || !lifts || update->nsteps == 0) return;
-  int moved = 0, given = 0;
-  for (int k = 0; k < modify->nfix; k++) {
-    const Fix *fix = modify->fix[k];
-    if (fits("gravity addforce* efield* external python* spring* drag smd freeze setforce aveforce planeforce "
-             "lineforce move", plain_style(fix->style)))
-      given |= fix->groupbit;
-    else if (fix->time_integrate) moved |= fix->groupbit;
-  }
-  const int *mask = atom->mask;
-  const tagint first = first_atom(lmp, [&](int i) {
-    return (mask[i] & groupbit) && (mask[i] & moved) && !(mask[i] & given);
-  });
+  const tagint first = first_moved(lmp, "gravity addforce* efield* external python* spring* drag smd freeze setforce "
+                                        "aveforce planeforce lineforce move",
+                                   [this](int i) { return (atom->mask[i] & groupbit) != 0; });
   if (first)
     stream.told.warn(VansTold::WEIGHT,
                      "keyword gravity: no fix gives atom " + std::to_string(first) + " a weight, so that the "
@@ -154,7 +142,9 @@ void FixHydroVans::tell_smooth()
 /* Once: by the default a clump whose members overlap has the buoyancy and the drag of all of them */
 void FixHydroVans::tell_overlap()
 {
-  if (stream.told.has(VansTold::OVERLAP) || set.overlap_given || !atom->molecule_flag || set.yade() || !set.has_grains()) return;
+  if (stream.told.has(VansTold::OVERLAP) || set.overlap_given || !atom->molecule_flag || set.yade() ||
+      !set.has_grains())
+    return;
   const tagint first = overlaps.first(groupbit | average_bit);
   if (first == 0) return;
   stream.told.warn(VansTold::OVERLAP,

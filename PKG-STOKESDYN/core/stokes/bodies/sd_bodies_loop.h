@@ -31,8 +31,8 @@ typedef struct {
   double *on_spheres, *bodies, *alone;
   /* [SD_TIE_OF_BODY bodies] scratch of a tie; NULL: forces have as many rows, and lend theirs */
   double *tied;
-  /* hides: there are points that no body has, whose forces are 0; rests: u is 0, on all ranks, known once the bodies
-   * have been for themselves */
+  /* hides: there are points that no body has, whose forces are 0; rests: u is 0, on all ranks, known once the
+   * bodies have been for themselves */
   int shells, guess_is_new, hides, rests;
   sd_bodies_verdict verdict;
   double tie_tolerance;

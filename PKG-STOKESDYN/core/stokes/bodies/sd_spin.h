@@ -16,9 +16,9 @@ typedef struct {
 } sd_spin_field;
 
 /* Is a sphere overloaded after the next move? 0: no; 1 or -1: yes, and this is the sign of the field's torque
- * along its axis. now: the same before that move. W: its angular velocity; by_fluid: the torque of the fluid on
- * it; others: all other torques, of an overloaded one with that of the field. An overloaded sphere is so until
- * it has caught up with the field, or the field with it. */
+ * along its axis. now: the same before that move. W: its angular velocity; by_fluid: the torque of the fluid
+ * on it; others: all other torques, of an overloaded one with that of the field. An overloaded sphere is so
+ * until it has caught up with the field, or the field with it. */
 double sd_spin_overload(const sd_spin_field *field, double now, const double W[3], const double by_fluid[3],
                         const double others[3]);
 

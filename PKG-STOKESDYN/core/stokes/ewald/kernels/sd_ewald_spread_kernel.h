@@ -257,8 +257,9 @@ INLINE void force_of_rows(int terms, const spreading *s, const windows *w, real 
 }
 
 /* A vector that is as long as a line of the cache and begins anywhere takes as long to read as two that begin
- * with lines. So of forces alone whole lines of the brick are read, the first of which begins `within` numbers
- * before the window, and one more than there are vectors. (Spreading, which also writes, is slower so.) */
+ * with lines. So of forces alone whole lines of the brick are read, the first of which begins `within`
+ * numbers before the window, and one more than there are vectors. (Spreading, which also writes, is slower
+ * so.) */
 #if defined(SD_AVX512) && !defined(SD_SINGLE)
 enum { IN_LINES = 1 };
 
