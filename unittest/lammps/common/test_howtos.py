@@ -18,7 +18,7 @@ DOC = TOP / "PKG-STOKESDYN" / "doc"
 
 # page -> how far each column of its tables may be off (relative)
 HOWTOS = {
-    "brownian": {},
+    "brownian": {"c_mean": 0.25},
     "clumps": {"v_drift": 1e-2},
     "cfd": {},
     "overdamped": {},
