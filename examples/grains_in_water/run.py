@@ -33,7 +33,8 @@ def excess(shot):
     return P[low & (shot["x"] < 5)].mean() - P[low & (shot["x"] > 15)].mean()
 
 
-figure, axes = plt.subplots(4, 2, figsize=(9, 7.2), gridspec_kw=dict(height_ratios=[1, 1, 1, 1.1]))
+figure, axes = plt.subplots(4, 2, figsize=(9, 7.2), layout="constrained",
+                            gridspec_kw=dict(height_ratios=[1, 1, 1, 1.1]))
 rows, fronts, pressures = [], {}, {}
 for column, (name, packed) in enumerate((("loose", dict(friction=1, calm=3)), ("dense", dict(friction=0, calm=0.1)))):
     out, run = S.lmp(folder, "grains_in_water", name, steps=steps, **packed)

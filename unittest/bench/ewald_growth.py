@@ -4,7 +4,7 @@
     . build/env.sh; OPENBLAS_NUM_THREADS=1 unittest/bench/ewald_growth.py [--most 1000000] [--picture FILE]
 
 Spheres of one radius near the points of a cubic lattice, volume fraction 0.2, none overlaps; relative_tolerance 1e-3,
-warm start. Time of the clock of STEPS steps after the first ones, least of REPEATS; on one core. The slope of the
+warm start. Processor time of STEPS steps after the first ones, least of REPEATS; on one core. The slope of the
 logarithms between neighbours in N must stay below 1.1 beyond 10^4. Errors of such forces:
 unittest/lammps/stokes/test_ewald.py."""
 import argparse
@@ -29,9 +29,9 @@ first, steps, repeats = [int(k) for k in sys.argv[2:]]
 lmp.command(f"run {first} post no")
 times = []
 for r in range(repeats):
-    begin = time.perf_counter()
+    begin = time.process_time()
     lmp.command(f"run {steps} pre no post no")
-    times.append((time.perf_counter() - begin) / steps)
+    times.append((time.process_time() - begin) / steps)
 print(min(times))
 """
 
