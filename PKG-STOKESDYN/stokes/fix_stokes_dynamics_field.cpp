@@ -115,17 +115,17 @@ static std::vector<double> places_of(const sd_field_grid &g)
   return x;
 }
 
-/* Rows of ten numbers that begin with a place -> those of all ranks within reach of the planes of
- * this one, each periodic image as a row of its own; jumps: by how much the velocity of an image,
- * behind the fourth number, grows with each edge */
-std::vector<double> FixStokesDynamicsField::near_planes(const sd_field_grid &g, double reach,
-                                                        const std::vector<double> &rows,
-                                                        const double *jumps) const
+/* How the box repeats itself; in two dimensions across them as it does along them */
+StokesDyn::Lattice FixStokesDynamicsField::images() const
 {
-  Lattice lattice = Lattice::of(domain);
+  StokesDyn::Lattice lattice = StokesDyn::Lattice::of(domain);
   if (domain->dimension == 2) std::fill_n(lattice.periodic, 3, domain->xperiodic);
-  std::vector<double> x;
-  for (size_t k = 0; k < rows.size(); k += 10) x.insert(x.end(), &rows[k], &rows[k] + 3);
+  return lattice;
+}
+
+/* Of the places x of all ranks those within reach of the planes of this one, each periodic image by itself */
+Halo FixStokesDynamicsField::near_planes(const sd_field_grid &g, double reach, const std::vector<double> &x) const
+{
   double lo[3], hi[3];
   for (int d = 0; d < 3; d++) {
     lo[d] = g.lo[d] + (d == 2 ? g.from : 0) * g.step[d];
@@ -133,43 +133,38 @@ std::vector<double> FixStokesDynamicsField::near_planes(const sd_field_grid &g, 
   }
   if (g.from == g.to) lo[2] = INFINITY;
   Halo halo(world);
-  if (!halo.find_around(lattice, reach, x, lo, hi))
+  if (!halo.find_around(images(), reach, x, lo, hi))
     voice.at_step().fail_one("keywords lo and hi: the grid, at z from " + text(lo[2]) + " to " +
                              text(hi[2]) + ", sees more than 1000 images of each sphere and 1e7 in "
                              "all; is it in other units than the box?");
-  const size_t n = halo.count();
-  std::vector<double> near(10 * n + 10), places(3 * n + 3), faster(3 * n + 3, 0.0);
-  halo.refresh(rows.data(), near.data(), 10);
-  halo.place(lattice.h, x.data(), places.data());
-  if (jumps) halo.place(jumps, nullptr, faster.data());
-  for (size_t k = 0; k < n; k++) {
-    std::copy_n(&places[3 * k], 3, &near[10 * k]);
-    for (int d = 0; d < 3; d++) near[10 * k + 4 + d] += faster[3 * k + d];
-  }
-  near.resize(10 * n);
+  return halo;
+}
+
+/* Numbers [width n] of what is on this rank -> of what is near its planes */
+static std::vector<double> near_by(const Halo &halo, const std::vector<double> &mine, int width)
+{
+  std::vector<double> near(width * ((size_t) halo.count() + 1));
+  halo.refresh(mine.data(), near.data(), width);
   return near;
 }
 
-namespace {
-/* Rows as they come from hydrodynamics, as the core reads them */
-struct Sources {
-  std::vector<double> x, a, F, T;
-  sd_field_sources as;
-
-  explicit Sources(const std::vector<double> &rows)
-  {
-    const size_t n = rows.size() / 10;
-    take_apart(rows, n, {{&x, 3}, {&a, 1}, {&F, 3}, {&T, 3}});
-    as = {(int) n, x.data(), a.data(), F.data(), T.data()};
-  }
-};
-}    // namespace
-
-static sd_field_cloud measure_all(MPI_Comm world, const std::vector<double> &rows)
+static std::vector<double> places_near_by(const Halo &halo, const double h[6], const std::vector<double> &x)
 {
-  const Sources mine(rows);
+  std::vector<double> near(3 * ((size_t) halo.count() + 1));
+  halo.place(h, x.data(), near.data());
+  return near;
+}
+
+static sd_field_sources as_core(const FlowSources &s, int n)
+{
+  return {n, s.x.data(), s.a.data(), s.F.data(), s.T.data()};
+}
+
+static sd_field_cloud measure_all(MPI_Comm world, const FlowSources &sources)
+{
+  const sd_field_sources mine = as_core(sources, (int) sources.a.size());
   sd_field_cloud c;
-  sd_field_measure(&mine.as, &c);
+  sd_field_measure(&mine, &c);
   double sums[] = {c.all.count, c.all.squares, c.all.fourths, c.torque, c.check};
   double most[] = {c.all.largest, -c.lo[0], -c.lo[1], -c.lo[2], c.hi[0], c.hi[1], c.hi[2]};
   MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, world);
@@ -185,48 +180,56 @@ static sd_field_cloud measure_all(MPI_Comm world, const std::vector<double> &row
 }
 
 /* The sources of all ranks go round, so many at a time. */
-sd_status FixStokesDynamicsField::add_all_pairs(const std::vector<double> &rows,
-                                                const sd_field_grid &g, double *u)
+sd_status FixStokesDynamicsField::add_all_pairs(const FlowSources &sources, const sd_field_grid &g, double *u)
 {
-  const size_t at_once = 10 * 100000;
+  const size_t at_once = 100000;
   sd_status status = SD_OK;
   for (int p = 0; p < comm->nprocs; p++) {
-    bigint count = (bigint) rows.size();
+    bigint count = (bigint) sources.a.size();
     MPI_Bcast(&count, 1, MPI_LMP_BIGINT, p, world);
     for (size_t from = 0; from < (size_t) count; from += at_once) {
-      std::vector<double> some(std::min(at_once, (size_t) count - from));
-      if (p == comm->me) std::copy_n(&rows[from], some.size(), some.data());
-      MPI_Bcast(some.data(), (int) some.size(), MPI_DOUBLE, p, world);
-      const Sources theirs(some);
-      if (status == SD_OK) status = sd_field_add_all(&tables, &theirs.as, &g, u);
+      const size_t n = std::min(at_once, (size_t) count - from);
+      const auto theirs = [&](const std::vector<double> &mine, size_t width) {
+        std::vector<double> some(width * n);
+        if (p == comm->me) std::copy_n(&mine[width * from], some.size(), some.data());
+        MPI_Bcast(some.data(), (int) some.size(), MPI_DOUBLE, p, world);
+        return some;
+      };
+      const FlowSources all = {theirs(sources.x, 3), theirs(sources.a, 1), theirs(sources.F, 3),
+                               theirs(sources.T, 3), {}};
+      const sd_field_sources some = as_core(all, (int) n);
+      if (status == SD_OK) status = sd_field_add_all(&tables, &some, &g, u);
     }
   }
   return status;
 }
 
-sd_status FixStokesDynamicsField::add_split(Hydrodynamics &hydro, const std::vector<double> &rows,
-                                            double range, const sd_field_grid &g, double *u)
+sd_status FixStokesDynamicsField::add_split(Hydrodynamics &hydro, const FlowSources &sources, double range,
+                                            const sd_field_grid &g, double *u)
 {
   const sd_world ranks = hydro.scene.ranks();
-  const Sources ours(rows), near(near_planes(g, range, rows, nullptr));
-  return sd_field_add_split(&tables, &ours.as, &near.as, &g, &ranks, u);
+  const Halo halo = near_planes(g, range, sources.x);
+  const FlowSources there = {places_near_by(halo, images().h, sources.x), near_by(halo, sources.a, 1),
+                             near_by(halo, sources.F, 3), near_by(halo, sources.T, 3), {}};
+  const sd_field_sources ours = as_core(sources, (int) sources.a.size()), near = as_core(there, halo.count());
+  return sd_field_add_split(&tables, &ours, &near, &g, &ranks, u);
 }
 
 /* Every rank takes its share of planes. */
 void FixStokesDynamicsField::add_flow(Hydrodynamics &hydro, const sd_field_grid &g, double *u)
 {
-  const std::vector<double> rows = hydro.on_fluid();
+  const FlowSources sources = hydro.on_fluid();
   if (hydro.settings.scene.boundary.slab())
-    in_slab.add(voice, hydro.scene, rows, places_of(g), u);
+    in_slab.add(voice, hydro.scene, sources, places_of(g), u);
   else
-    add_sums(hydro, rows, g, u);
+    add_sums(hydro, sources, g, u);
 }
 
 /* Where the sources near to these are enough, the rank knows no others. */
-void FixStokesDynamicsField::add_sums(Hydrodynamics &hydro, const std::vector<double> &rows,
+void FixStokesDynamicsField::add_sums(Hydrodynamics &hydro, const FlowSources &sources,
                                       const sd_field_grid &g, double *u)
 {
-  const sd_field_cloud all = measure_all(world, rows);
+  const sd_field_cloud all = measure_all(world, sources);
   static const sd_field_sum SUMS[] = {SD_FIELD_AUTO, SD_FIELD_DIRECT, SD_FIELD_SPLIT};
   const Scene::Settings &scene = hydro.settings.scene;
   const sd_ewald_box box = Scene::lattice_box(domain);
@@ -234,7 +237,7 @@ void FixStokesDynamicsField::add_sums(Hydrodynamics &hydro, const std::vector<do
   sd_status status = sd_field_plan(&tables, SUMS[scene.far_field], &box, scene.far_field_tolerance,
                                    &all, &g, &range);
   if (status == SD_OK)
-    status = std::isinf(range) ? add_all_pairs(rows, g, u) : add_split(hydro, rows, range, g, u);
+    status = std::isinf(range) ? add_all_pairs(sources, g, u) : add_split(hydro, sources, range, g, u);
   if (status != SD_OK)
     fail_by(voice.at_step(), status, "the flow of " + text(all.all.count) +
                                      " spheres or points at " + std::to_string(g.n[0]) + " x " +
@@ -242,25 +245,33 @@ void FixStokesDynamicsField::add_sums(Hydrodynamics &hydro, const std::vector<do
                                      " points: " + sd_status_string(status));
 }
 
-/* In a box that deforms with the fluid an image moves with the flow there. */
+/* In a box that deforms with the fluid an image moves with the flow there: faster by how much the velocity
+ * grows with each edge. */
 std::vector<unsigned char> FixStokesDynamicsField::put_spheres(const Hydrodynamics &hydro,
                                                                const sd_field_grid &g,
                                                                double *u) const
 {
-  std::vector<double> mine, x, a, V;
+  std::vector<double> x, a, V, faster;
   double largest = 0.0;
   for (int i : hydro.ambient.who()) {
-    mine.insert(mine.end(), atom->x[i], atom->x[i] + 3);
-    mine.push_back(atom->radius[i]);
-    mine.insert(mine.end(), atom->v[i], atom->v[i] + 3);
-    mine.insert(mine.end(), atom->omega[i], atom->omega[i] + 3);
+    x.insert(x.end(), atom->x[i], atom->x[i] + 3);
+    a.push_back(atom->radius[i]);
+    V.insert(V.end(), atom->v[i], atom->v[i] + 3);
+    V.insert(V.end(), atom->omega[i], atom->omega[i] + 3);
     largest = std::max(largest, atom->radius[i]);
   }
   largest = among_all(world, largest, MPI_MAX);
-  const std::vector<double> near = near_planes(g, largest, mine, hydro.ambient.jumps());
-  const size_t n = near.size() / 10;
-  take_apart(near, n, {{&x, 3}, {&a, 1}, {&V, 6}});
-  const sd_field_bodies spheres = {(int) n, x.data(), a.data(), V.data()};
+  const Halo halo = near_planes(g, largest, x);
+  x = places_near_by(halo, images().h, x);
+  a = near_by(halo, a, 1);
+  V = near_by(halo, V, 6);
+  if (const double *jumps = hydro.ambient.jumps()) {
+    faster.resize(3 * (size_t) halo.count() + 3);
+    halo.place(jumps, nullptr, faster.data());
+    for (size_t k = 0; k < (size_t) halo.count(); k++)
+      for (int d = 0; d < 3; d++) V[6 * k + d] += faster[3 * k + d];
+  }
+  const sd_field_bodies spheres = {halo.count(), x.data(), a.data(), V.data()};
   std::vector<unsigned char> inside(sd_field_points(&g) + 1);
   const sd_status status = sd_field_inside(&spheres, &g, u, inside.data());
   if (status != SD_OK) voice.fail_one(sd_status_string(status));

@@ -39,13 +39,12 @@ class FixStokesDynamicsField : public RowsFix {
       voice, "there is no pair_style stokes_dynamics whose flow it could write"};
   sd_field_grid grid() const;
   int end_of_share(int planes, int p) const;
-  std::vector<double> near_planes(const sd_field_grid &, double reach,
-                                  const std::vector<double> &rows, const double *jumps) const;
+  Lattice images() const;
+  Halo near_planes(const sd_field_grid &, double reach, const std::vector<double> &x) const;
   void add_flow(Hydrodynamics &, const sd_field_grid &, double *u);
-  void add_sums(Hydrodynamics &, const std::vector<double> &rows, const sd_field_grid &, double *u);
-  sd_status add_all_pairs(const std::vector<double> &rows, const sd_field_grid &, double *u);
-  sd_status add_split(Hydrodynamics &, const std::vector<double> &rows, double range,
-                      const sd_field_grid &, double *u);
+  void add_sums(Hydrodynamics &, const FlowSources &, const sd_field_grid &, double *u);
+  sd_status add_all_pairs(const FlowSources &, const sd_field_grid &, double *u);
+  sd_status add_split(Hydrodynamics &, const FlowSources &, double range, const sd_field_grid &, double *u);
   std::vector<unsigned char> put_spheres(const Hydrodynamics &, const sd_field_grid &,
                                          double *u) const;
   void write(const sd_field_grid &, const std::vector<double> &u,

@@ -1,8 +1,8 @@
 #include "flow_in_slab.h"
 
+#include "hydrodynamics.h"
 #include "keywords.h"
 #include "ranks.h"
-#include "scene.h"
 
 #include "comm.h"
 #include "domain.h"
@@ -108,18 +108,13 @@ static size_t piece_of(size_t k, size_t pieces)
   return (size_t) (((uint64_t) k * 0x9E3779B97F4A7C15ull) >> 32) % pieces;
 }
 
-void FlowInSlab::add(const Voice &voice, Scene &scene, const std::vector<double> &sources,
+void FlowInSlab::add(const Voice &voice, Scene &scene, const FlowSources &sources,
                      const std::vector<double> &x, double *u)
 {
   const Lattice lattice = Lattice::of(voice.lmp->domain);
   const sd_slab_walls walls = scene.settings.boundary.slab_walls();
   const MPI_Comm world = voice.lmp->world;
-  Piece spheres;
-  for (size_t k = 0; k + 10 <= sources.size(); k += 10) {
-    spheres.x.insert(spheres.x.end(), &sources[k], &sources[k] + 3);
-    spheres.a.push_back(sources[k + 3]);
-    spheres.F.insert(spheres.F.end(), &sources[k + 4], &sources[k + 4] + 3);
-  }
+  const Piece spheres = {sources.x, sources.a, sources.F};
   std::vector<size_t> wet;
   std::vector<double> places;
   for (size_t k = 0; k < x.size() / 3; k++) {

@@ -22,14 +22,14 @@ namespace StokesDyn {
 
 class Scene;
 class Voice;
+struct FlowSources;
 
 class FlowInSlab {
  public:
-  /* u [3m] += the flow at x [3m], places of this rank; 0 where there is no fluid. sources: rows of
-   * ten of this rank, as Hydrodynamics::on_fluid has them, torques not read. On all ranks together.
-   * Errors: no grid for the sum, more images than memory has room for */
-  void add(const Voice &voice, Scene &scene, const std::vector<double> &sources,
-           const std::vector<double> &x, double *u);
+  /* u [3m] += the flow of these at x [3m], places of this rank; 0 where there is no fluid. Torques are not
+   * read. On all ranks together. Errors: no grid for the sum, more images than memory has room for */
+  void add(const Voice &voice, Scene &scene, const FlowSources &sources, const std::vector<double> &x,
+           double *u);
   double memory_usage() const;
 
  private:

@@ -34,6 +34,13 @@ struct Moves {
   std::vector<double> atoms, clumps;
 };
 
+/* What makes the flow, spheres of this rank or the points of their shells: places [3n], radii [n], 0: point
+ * forces; force and torque on the fluid over its viscosity [3n]; and that [n] */
+struct FlowSources {
+  std::vector<double> x, a, F, T, eta;
+  void reserve(size_t n);
+};
+
 class Hydrodynamics : protected LAMMPS_NS::Pointers {
  public:
   const Voice voice;
@@ -106,10 +113,9 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
    * Bossis & Brady (compute_stokes_dynamics_stress.h). On all ranks together. */
   void stress(std::vector<double> &of_atoms);
 
-  /* What makes the flow in a step that has been computed, until its end: of each sphere of this rank, or of
-   * each point of its shell, place, radius, and force and torque on the fluid over its viscosity, [10 n].
-   * viscosity [n], if it is wanted. On all ranks together. */
-  std::vector<double> on_fluid(std::vector<double> *viscosity = nullptr);
+  /* In a step that has been computed, until its end; without films, which act between two spheres and not on
+   * the fluid far from them. On all ranks together. */
+  FlowSources on_fluid();
 
   /* In a slit with flow flux: the mean pressure gradient [3] that keeps the flux at 0, in the same
    * steps; else 0. On all ranks together. */
@@ -196,7 +202,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void add_moments_left(double part);
   /* [6 rows], or empty: what the mean of the first moments lacks, of the solve with noise */
   std::vector<double> moments_left;
-  std::vector<double> of_points_on_fluid(std::vector<double> *viscosity);
+  FlowSources of_points_on_fluid();
   int algorithm() const    // of the next solve
   {
     return memory->global.diverged != 0.0 ? StokesSettings::GRADIENTS : settings.algorithm;

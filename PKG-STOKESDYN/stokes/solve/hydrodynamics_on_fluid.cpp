@@ -77,37 +77,45 @@ Hydrodynamics::Points Hydrodynamics::points_of_now()
   return now;
 }
 
-std::vector<double> Hydrodynamics::of_points_on_fluid(std::vector<double> *viscosity)
+void FlowSources::reserve(size_t n)
+{
+  for (auto *numbers : {&x, &F, &T}) numbers->reserve(3 * n + 3);    // data() is a place even where there are none
+  for (auto *numbers : {&a, &eta}) numbers->reserve(n + 1);
+}
+
+FlowSources Hydrodynamics::of_points_on_fluid()
 {
   const Points now = points_of_now();
   const int *first = shells.first_of_rows();
   const double *w = scene.local().w;
-  std::vector<double> all;
+  FlowSources all;
+  all.reserve(first[scene.size()]);
   for (int i = 0; i < scene.size(); i++)
     for (size_t k = first[i]; k < (size_t) first[i + 1]; k++) {
       if (!(now.b[k] > 0.0)) continue;
-      all.insert(all.end(), &now.x[3 * k], &now.x[3 * k] + 3);
-      all.push_back(now.b[k]);
-      for (int d = 0; d < 6; d++) all.push_back(d < 3 ? w[i] * w[i] * now.l[3 * k + d] : 0.0);
-      if (viscosity) viscosity->push_back(1.0 / (w[i] * w[i]));
+      all.x.insert(all.x.end(), &now.x[3 * k], &now.x[3 * k] + 3);
+      all.a.push_back(now.b[k]);
+      for (int d = 0; d < 3; d++) all.F.push_back(w[i] * w[i] * now.l[3 * k + d]);
+      all.eta.push_back(1.0 / (w[i] * w[i]));
     }
+  all.T.resize(all.F.size());
   return all;
 }
 
-/* F is what the mobility knows: without films, which act between two spheres and not on the fluid
- * far from them. */
-std::vector<double> Hydrodynamics::on_fluid(std::vector<double> *viscosity)
+FlowSources Hydrodynamics::on_fluid()
 {
-  if (shells.settings.on()) return of_points_on_fluid(viscosity);
+  if (shells.settings.on()) return of_points_on_fluid();
   const bool without_films = settings.lubrication.on && !overdamped;
   const int m = width();
-  std::vector<double> all;
+  FlowSources all;
+  all.reserve(ambient.who().size());
   const auto add = [&](int i, const double *F) {
     const bool point = settings.scene.tensor == SD_TENSOR_OSEEN;
-    all.insert(all.end(), atom->x[i], atom->x[i] + 3);
-    all.push_back(point ? 0.0 : atom->radius[i]);
-    for (int d = 0; d < 6; d++) all.push_back(d < m ? -F[d] / ambient.viscosity(i) : 0.0);
-    if (viscosity) viscosity->push_back(ambient.viscosity(i));
+    const double eta = ambient.viscosity(i);
+    all.x.insert(all.x.end(), atom->x[i], atom->x[i] + 3);
+    all.a.push_back(point ? 0.0 : atom->radius[i]);
+    for (int d = 0; d < 6; d++) (d < 3 ? all.F : all.T).push_back(d < m ? -F[d] / eta : 0.0);
+    all.eta.push_back(eta);
   };
   if (overdamped && settings.rigid.each_alone()) {    // these are not kept
     clump_poses.find();
@@ -131,16 +139,10 @@ void Hydrodynamics::pressure_gradient(double *gradient)
   std::fill_n(gradient, 3, 0.0);
   const sd_slab_walls walls = settings.scene.boundary.slab_walls();
   if (!walls.no_flux) return;
-  std::vector<double> eta, x, a, F;
-  const std::vector<double> rows = on_fluid(&eta);
-  const size_t n = eta.size();
-  for (size_t k = 0; k < n; k++) {
-    const double *row = &rows[10 * k];
-    x.insert(x.end(), row, row + 3);
-    a.push_back(row[3]);
-    for (int d = 0; d < 3; d++) F.push_back(eta[k] * row[4 + d]);
-  }
-  sd_slab_add_pressure_gradient(&walls, domain->prd, (long) n, x.data(), a.data(), F.data(), gradient);
+  FlowSources all = on_fluid();
+  for (size_t j = 0; j < all.F.size(); j++) all.F[j] *= all.eta[j / 3];
+  sd_slab_add_pressure_gradient(&walls, domain->prd, (long) all.a.size(), all.x.data(), all.a.data(), all.F.data(),
+                                gradient);
   MPI_Allreduce(MPI_IN_PLACE, gradient, 3, MPI_DOUBLE, MPI_SUM, world);
 }
 
