@@ -5,10 +5,14 @@
 
 #include "sd_body.h"
 
-/* pre(r, f): l and V; r, f NULL: 0. Of held bodies V is read. bears: what sd_bodies_alone_bear made of r;
- * NULL: not known. */
-void sd_bodies_alone(const sd_bodies *A, const double *r, const double *bears, const double *f,
-                     double *scratch, double *l, double *V);
+/* What is left of the two lines of sd_bodies.h, r and f; NULL: 0. bears: what sd_bodies_alone_bear made of
+ * r; NULL: not known */
+typedef struct {
+  const double *r, *bears, *f;
+} sd_bodies_left;
+
+/* pre(r, f): l and V. Of held bodies V is read. */
+void sd_bodies_alone(const sd_bodies *A, const sd_bodies_left *left, double *scratch, double *l, double *V);
 /* f [6 bodies] = K^T M_b'^-1 r */
 void sd_bodies_alone_bear(const sd_bodies *A, const double *r, double *scratch, double *f);
 /* f = N^-1 V; V = N f */

@@ -12,7 +12,7 @@ static const sd_bodies_accuracy whole = {0.003, 0.2, 0.3, 0.1}, severed = {0.002
 
 const sd_bodies_accuracy *sd_bodies_accuracy_of(const sd_bodies_loop *c)
 {
-  return c->A->tie && c->A->tie->severed ? &severed : &whole;
+  return c->A->tie && c->A->tie->border.severed ? &severed : &whole;
 }
 
 double sd_bodies_tie_tolerance(const sd_bodies_loop *c, double power)
@@ -27,17 +27,20 @@ sd_status sd_bodies_pre(sd_bodies_loop *c, const double *r, const double *f, int
   const long size = sd_bodies_motions(c);
   double *load = c->bodies, *tied = load + size, *borne = tied + size, *bears = borne + size;
   if (!A->tie) {
-    sd_bodies_alone(A, r, NULL, f, c->alone, l, V);
+    const sd_bodies_left all = {r, NULL, f};
+    sd_bodies_alone(A, &all, c->alone, l, V);
     return SD_OK;
   }
   if (r) sd_bodies_alone_bear(A, r, c->alone, bears);
   for (long j = 0; j < size; j++) load[j] = (f ? f[j] : 0.0) - (r ? bears[j] : 0.0);
   memcpy(tied, V, sizeof(double) * (size_t) size);
-  const sd_status status = sd_tie_solve(A, load, r, c->tie_tolerance, moved, sd_bodies_lend(c, l), tied, borne);
+  const sd_tie_problem problem = {load, r, c->tie_tolerance, moved};
+  const sd_status status = sd_tie_solve(A, &problem, sd_bodies_lend(c, l), tied, borne);
   if (status != SD_OK) return status;
   if (c->hides) memset(l, 0, sizeof(double) * (size_t) sd_bodies_unknowns(A)); /* the tie has used it */
   for (long j = 0; j < size; j++) load[j] = (f ? f[j] : 0.0) - borne[j];
-  sd_bodies_alone(A, r, r ? bears : NULL, load, c->alone, l, V);
+  const sd_bodies_left left = {r, r ? bears : NULL, load};
+  sd_bodies_alone(A, &left, c->alone, l, V);
   for (int b = 0; b < sd_bodies_count(A); b++)
     if (sd_tie_binds(A, b)) memcpy(V + 6 * (long) b, tied + 6 * (long) b, 6 * sizeof(double));
   sd_tie_share(A, l);

@@ -50,10 +50,11 @@ static sd_status start_alone(sd_bodies_loop *c, int wanted)
   const sd_bodies *A = c->A;
   double s[4], *V = sd_bodies_motion_of(c, c->v.x), *still = sd_bodies_motion_of(c, c->v.z);
   const int rests_here = begin_residual(c), brief = rests_here && !wanted && !A->known;
+  const sd_bodies_left all = {rests_here ? NULL : c->v.r, NULL, c->f};
   sd_bodies_alone_move(A, c->f, still);
   hold(c, V);
   if (brief) memcpy(V, still, sizeof(double) * (size_t) sd_bodies_motions(c));
-  else sd_bodies_alone(A, rests_here ? NULL : c->v.r, NULL, c->f, c->alone, c->v.x, V);
+  else sd_bodies_alone(A, &all, c->alone, c->v.x, V);
   find_powers(c, brief ? NULL : c->v.x, V, s);
   for (long j = 0; brief && j < sd_bodies_motions(c); j++) s[0] += c->f[j] * V[j];
   s[2] = sd_bodies_spent(c, V) - sd_bodies_spent(c, still);

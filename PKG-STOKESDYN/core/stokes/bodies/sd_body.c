@@ -174,15 +174,16 @@ static void move_in_part(const sd_body_shape *s, int at, const double load[6], d
   sd_cholesky_solve(3, R, 1, motion + at); /* a block of a matrix that has been inverted */
 }
 
-/* pre(r, f) of body b; bears: K^T M_b'^-1 r, NULL: not known. In the axes and lengths of the shape all matrices
+/* pre(r, f) of body b, of which bears and f [6] are. In the axes and lengths of the shape all matrices
  * are constant: with s = eta a, s B for M_b'^-1, V = N (f - K^T s B y) / s, z = s B (y + K V), y = r. What is
  * rigid in r goes before the product, and leaves no rounding there. */
-static void body_respond(const sd_body *b, sd_body_known known, const double *r, const double *bears,
-                         const double *f, double *scratch, double *l, double V[6])
+static void body_respond(const sd_body *b, sd_body_known known, const sd_bodies_left *left, double *scratch, double *l,
+                         double V[6])
 {
   const sd_body_shape *shape = b->shape;
   const double s = b->eta * b->a;
   const int N = shape->width * shape->m;
+  const double *r = left->r, *bears = left->bears, *f = left->f;
   double *y = scratch, *z = scratch + N, own[6] = {0.0}, load[6] = {0.0}, motion[6];
   for (int d = 0; d < 6; d++) own[d] = (f ? f[d] : 0.0) - (bears ? bears[d] : 0.0);
   to_shape(b->R, 6, 1.0 / b->a, own, load);
@@ -207,10 +208,10 @@ static void body_respond(const sd_body *b, sd_body_known known, const double *r,
   write_rows(b, z, l);
 }
 
-void sd_bodies_alone(const sd_bodies *A, const double *r, const double *bears, const double *f,
-                     double *scratch, double *l, double *V)
+void sd_bodies_alone(const sd_bodies *A, const sd_bodies_left *left, double *scratch, double *l, double *V)
 {
   const int w = A->points.width;
+  const double *r = left->r, *bears = left->bears, *f = left->f;
   for (int e = 0; e < A->lone; e++)
     for (int d = 0; d < w; d++) {
       const long j = (long) w * A->loner[e] + d, of = 6 * (long) e + d;
@@ -221,8 +222,8 @@ void sd_bodies_alone(const sd_bodies *A, const double *r, const double *bears, c
     }
   for (int b = 0; b < A->shaped; b++) {
     const long of = 6 * (long) (A->lone + b);
-    body_respond(A->body + b, sd_bodies_known(A, A->lone + b), r, bears ? bears + of : NULL, f ? f + of : NULL,
-                 scratch, l, V + of);
+    const sd_bodies_left own = {r, bears ? bears + of : NULL, f ? f + of : NULL};
+    body_respond(A->body + b, sd_bodies_known(A, A->lone + b), &own, scratch, l, V + of);
   }
 }
 

@@ -102,7 +102,8 @@ static sd_status add_response(const sd_bodies *A, double tolerance, sd_tie_room 
     if (!A->tie || !sd_tie_binds(A, (int) (j / 6))) v[j] += z[j];
   if (!A->tie) return SD_OK;
   memset(z, 0, sizeof(double) * (size_t) motions);
-  const sd_status status = sd_tie_solve(A, load, NULL, tolerance, 0, room, z, borne);
+  const sd_tie_problem problem = {load, NULL, tolerance, 0};
+  const sd_status status = sd_tie_solve(A, &problem, room, z, borne);
   for (long j = 0; j < motions && status == SD_OK; j++)
     if (sd_tie_binds(A, (int) (j / 6))) v[j] += z[j];
   return status;

@@ -27,7 +27,7 @@ static sd_status add_borne(const sd_bodies *A, const sd_rigid *K, int both, doub
   sd_tie *t = A->tie;
   double *f = room.spheres + 6 * (long) t->L->n, *bodies = room.bodies + 6 * CG_VECTORS * (long) sd_bodies_count(A);
   const double *v = sd_rigid_moved(K, V, room.spheres);
-  const sd_status status = both ? sd_lubrication_apply_both(t->L, t->stiff, t->spring, v, f)
+  const sd_status status = both ? sd_lubrication_apply_both(t->L, t->springs.own, t->springs.c, v, f)
                                 : sd_lubrication_apply(t->L, v, f);
   t->products++;
   if (status != SD_OK) return status;
@@ -82,15 +82,16 @@ static sd_status tie_judge(void *ctx, const sd_cg_state *now, int *done)
 }
 
 /* borne = K^T (L + X) K V_held + K^T X r, what is so before anybody moves */
-static sd_status bear_before(const sd_bodies *A, const double *r, int moved, const double *V, sd_tie_room room,
+static sd_status bear_before(const sd_bodies *A, const sd_tie_problem *problem, const double *V, sd_tie_room room,
                              double *borne)
 {
+  const double *r = problem->r;
   const int bodies = sd_bodies_count(A);
   sd_status status = SD_OK;
   memset(borne, 0, sizeof(double) * 6 * (size_t) bodies);
   if (sd_tie_has_springs(A)) sd_tie_approach_see(A, r);
   if (sd_tie_has_springs(A) && r) status = sd_tie_approach_push(A, NULL, room.spheres, borne);
-  if (!moved || status != SD_OK) return status;
+  if (!problem->moved || status != SD_OK) return status;
   double *by_held = room.bodies;
   status = resist(A, V, room, by_held);
   for (long j = 0; j < 6 * (long) bodies; j++) borne[j] += by_held[j];
@@ -100,13 +101,13 @@ static sd_status bear_before(const sd_bodies *A, const double *r, int moved, con
 /* H V = b by H (V - V_held) = b - H V_held: r on entry, less H_0 V, is what is borne. What is held,
  * and bodies without neighbours, is not the preconditioner's, and stays as it is. H_0 V_held loads
  * bodies that are spun, whose centres are free. */
-sd_status sd_tie_solve(const sd_bodies *A, const double *g, const double *r, double tolerance,
-                       int moved, sd_tie_room room, double *V, double *borne)
+sd_status sd_tie_solve(const sd_bodies *A, const sd_tie_problem *problem, sd_tie_room room, double *V, double *borne)
 {
+  const double *g = problem->g;
   const long size = 6 * (long) sd_bodies_count(A);
   double *x = room.bodies;
   const sd_cg_vectors v = {x, x + size, x + 2 * size, x + 3 * size, x + 4 * size};
-  films s = {A, tolerance, 0.0, borne, room};
+  films s = {A, problem->tolerance, 0.0, borne, room};
   const sd_cg cg = {.size = size,
                     .paired = size,
                     .ctx = &s,
@@ -115,10 +116,10 @@ sd_status sd_tie_solve(const sd_bodies *A, const double *g, const double *r, dou
                     .judge = tie_judge,
                     .world = &A->world};
   sd_cg_state state;
-  sd_status status = bear_before(A, r, moved, V, room, borne);
+  sd_status status = bear_before(A, problem, V, room, borne);
   if (status != SD_OK) return status;
   memset(x, 0, sizeof(double) * (size_t) size);
-  if (moved) sd_bodies_alone_resist(A, V, x);
+  if (problem->moved) sd_bodies_alone_resist(A, V, x);
   for (long j = 0; j < size; j++) v.r[j] = g[j] - borne[j] - x[j];
   memset(x, 0, sizeof(double) * (size_t) size);
   if ((status = sd_cg_run(&cg, &v, &state)) != SD_OK) return status;
@@ -135,9 +136,11 @@ void sd_tie_share(const sd_bodies *A, double *l)
 
 void sd_tie_free(sd_tie *t)
 {
+  const sd_tie_border *b = &t->border;
+  const sd_tie_springs *X = &t->springs;
+  void *const arrays[] = {t->made_of, t->scale, t->all,  X->c,    X->own,  X->seen,   X->there, b->other,
+                          b->weight,  b->shared, b->lent, b->away, b->lend, b->borrow, b->sent};
   sd_block_cholesky_free(&t->factor);
-  void *const arrays[] = {t->spring, t->stiff, t->scale, t->other, t->all,    t->face, t->faces_there,
-                          t->weight, t->shared, t->lent, t->away,  t->lend,   t->borrow, t->sent, t->made_of};
   for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) free(arrays[k]);
   *t = (sd_tie){0};
 }

@@ -20,13 +20,19 @@ SD_BEGIN_C
  * SD_ENOMEMORY; SD_ESINGULAR, SD_ENOTFINITE; that of a function of the caller. */
 sd_status sd_tie_make(const sd_bodies *A, sd_tie_room room);
 
-/* V [6 bodies] from g [6 bodies] and r (rows, NULL: 0), until what H V lacks of the right side is
- * below `tolerance` of that. room: scratch. V: on entry velocities of the held bodies, and 0 elsewhere;
- * moved: some are not 0. Bodies that nobody is near to keep V = 0. borne = K^T (L K V + X (r + K V)): what
- * a body bears less than alone. SD_OK, also where as many products as are allowed leave more; as sd_cg.h
- * and sd_tie_make. */
-sd_status sd_tie_solve(const sd_bodies *A, const double *g, const double *r, double tolerance,
-                       int moved, sd_tie_room room, double *V, double *borne);
+typedef struct {
+  /* [6 bodies]; rows, NULL: 0 */
+  const double *g, *r;
+  /* what H V may lack of the right side, over that */
+  double tolerance;
+  /* are some velocities of held bodies not 0? */
+  int moved;
+} sd_tie_problem;
+/* V [6 bodies]: on entry velocities of the held bodies, and 0 elsewhere. Bodies that nobody is near to keep
+ * V = 0. borne = K^T (L K V + X (r + K V)): what a body bears less than alone. room: scratch. SD_OK, also
+ * where as many products as are allowed leave more; as sd_cg.h and sd_tie_make. */
+sd_status sd_tie_solve(const sd_bodies *A, const sd_tie_problem *problem, sd_tie_room room, double *V,
+                       double *borne);
 /* l (rows) += X (r + K V) of the last solution */
 void sd_tie_share(const sd_bodies *A, double *l);
 void sd_tie_free(sd_tie *t);

@@ -43,31 +43,31 @@ static int numbers_seen(const sd_bodies *A)
 
 int sd_tie_approach_reserve(const sd_bodies *A)
 {
-  sd_tie *t = A->tie;
-  const sd_lubrication *L = t->L;
+  sd_tie_springs *X = &A->tie->springs;
+  const sd_lubrication *L = A->tie->L;
   const size_t pairs = (size_t) (L->count + L->beyond), n = (size_t) L->n;
   const size_t width = (size_t) numbers_seen(A), others = (size_t) (L->n_all - L->n);
-  return sd_reserve(&t->spring, sizeof(*t->spring), pairs + 1, &t->most_springs) &&
-      sd_reserve(&t->stiff, sizeof(double), 6 * (n + 1), &t->most_stiff) &&
-      sd_reserve(&t->face, sizeof(double), 2 * width * n + 1, &t->most_faces) &&
-      sd_reserve(&t->faces_there, sizeof(double), width * others + 1, &t->most_faces_there);
+  return sd_reserve(&X->c, sizeof(*X->c), pairs + 1, &X->most_c) &&
+      sd_reserve(&X->own, sizeof(double), 6 * (n + 1), &X->most_own) &&
+      sd_reserve(&X->seen, sizeof(double), 2 * width * n + 1, &X->most_seen) &&
+      sd_reserve(&X->there, sizeof(double), width * others + 1, &X->most_there);
 }
 
 sd_status sd_tie_approach_make(const sd_bodies *A, double *mine)
 {
-  sd_tie *t = A->tie;
-  const sd_lubrication *L = t->L;
-  memset(t->stiff, 0, sizeof(double) * 6 * (size_t) L->n);
-  memset(t->spring, 0, sizeof(*t->spring) * (size_t) (L->count + L->beyond));
+  sd_tie_springs *X = &A->tie->springs;
+  const sd_lubrication *L = A->tie->L;
+  memset(X->own, 0, sizeof(double) * 6 * (size_t) L->n);
+  memset(X->c, 0, sizeof(*X->c) * (size_t) (L->count + L->beyond));
   if (!sd_tie_has_springs(A)) return SD_OK;
   const sd_status status = know_whole(A, mine);
   if (status != SD_OK) return status;
   for (long k = 0; k < L->count + L->beyond; k++) {
     const int i = L->pair[k][0], j = L->pair[k][1];
     if (j == i || !takes_part(L, mine, i) || !takes_part(L, mine, j)) continue;
-    t->spring[k] = L->model[k];
-    if (i < L->n) add_square(t->spring[k], L->link[k].d, t->stiff + 6 * (long) i);
-    if (j < L->n) add_square(t->spring[k], L->link[k].d, t->stiff + 6 * (long) j);
+    X->c[k] = L->model[k];
+    if (i < L->n) add_square(X->c[k], L->link[k].d, X->own + 6 * (long) i);
+    if (j < L->n) add_square(X->c[k], L->link[k].d, X->own + 6 * (long) j);
   }
   return SD_OK;
 }
@@ -97,7 +97,7 @@ static void add_springs(const sd_bodies *A, int width, const double *v, const do
     for (int e = 0; e < 3; e++) approach += d[e] * (vi[e] - vj[e]);
     if (strains) strain_of(d, w);
     for (int e = 0; e < strains; e++) approach += w[e] * (vi[3 + e] + vj[3 + e]);
-    approach *= A->tie->spring[k];
+    approach *= A->tie->springs.c[k];
     for (int e = 0; e < 3; e++) on_i[e] += approach * d[e];
     for (int e = 0; e < strains; e++) on_i[3 + e] += approach * w[e];
     if (!on_j) continue;
@@ -109,13 +109,13 @@ static void add_springs(const sd_bodies *A, int width, const double *v, const do
 /* What springs do, behind what they see */
 static double *pushed_of(const sd_bodies *A)
 {
-  return A->tie->face + numbers_seen(A) * (long) A->spheres.n;
+  return A->tie->springs.seen + numbers_seen(A) * (long) A->spheres.n;
 }
 
 void sd_tie_approach_see(const sd_bodies *A, const double *r)
 {
   const int n = A->spheres.n;
-  double *v = A->tie->face;
+  double *v = A->tie->springs.seen;
   if (r && A->faces) sd_faces_read(A->faces, n, r, v);
   else if (r) memcpy(v, r, sizeof(double) * 6 * (size_t) n);
   else memset(v, 0, sizeof(double) * (size_t) numbers_seen(A) * (size_t) n);
@@ -136,16 +136,16 @@ sd_status sd_tie_approach_push(const sd_bodies *A, const double *V, double *on_s
   const sd_tie *t = A->tie;
   const sd_world *world = &t->L->world;
   const int n = A->spheres.n, width = numbers_seen(A);
-  double *v = t->face, *pushed = pushed_of(A);
+  double *v = t->springs.seen, *pushed = pushed_of(A);
   const double *moved = V ? sd_rigid_moved(&A->spheres, V, on_spheres) : NULL;
   for (long i = 0; V && i < n; i++)
     for (int d = 0; d < 3; d++) v[width * i + d] += moved[6 * i + d];
   if (world->refresh && world->ranks > 1) {
-    const sd_status status = world->refresh(world->ctx, v, t->faces_there, width);
+    const sd_status status = world->refresh(world->ctx, v, t->springs.there, width);
     if (status != SD_OK) return status;
   }
   memset(pushed, 0, sizeof(double) * (size_t) width * (size_t) n);
-  add_springs(A, width, v, t->faces_there, pushed);
+  add_springs(A, width, v, t->springs.there, pushed);
   if (f) push_bodies(A, on_spheres, f);
   return SD_OK;
 }

@@ -67,7 +67,7 @@ static void films_on(const sd_tie *t, int i, double B[36])
 {
   sd_lubrication_own_block(t->L, i, B);
   for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) B[6 * p + q] += t->stiff[6 * (long) i + sd_symmetric3_at(p, q)];
+    for (int q = 0; q < 3; q++) B[6 * p + q] += t->springs.own[6 * (long) i + sd_symmetric3_at(p, q)];
 }
 
 void sd_tie_find_diagonal(const sd_bodies *A, double *diagonal)
@@ -130,7 +130,7 @@ double sd_tie_find_block(const sd_bodies *A, const double *place, long k, double
   const int arms = has_arm(rp) || has_arm(rq);
   sd_lubrication_link both = t->L->link[k];
   double of_p[2], of_q[2], B[36] = {0.0}, sum[6] = {0.0};    /* six, none of which waits for the others */
-  both.XA -= t->spring[k]; /* L_12 + X_12 */
+  both.XA -= t->springs.c[k]; /* L_12 + X_12 */
   largest_scales(sp, of_p);
   largest_scales(sq, of_q);
   if (!arms && strength(&both, of_p, of_q) < weak * weak) return 0.0;

@@ -7,7 +7,8 @@
 
 #include "sd_tied.h"
 
-/* Ranks tell each other which bodies of another each has in its factor: t->other -> t->lent, lend, borrow.
+/* Ranks tell each other which bodies of another each has in its factor: other -> lent, lend,
+ * borrow of its border.
  * mine: that of this rank so far, with which others go no further. On all ranks together, which agree on
  * the status: SD_OK; SD_ENOMEMORY; mine or that of another; that of a function of sd_world */
 sd_status sd_tie_border_lend(const sd_bodies *A, sd_status mine);

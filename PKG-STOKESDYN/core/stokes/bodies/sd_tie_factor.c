@@ -159,7 +159,8 @@ static int borders_meet(const sd_bodies *A, const assembly *a)
 static void take_other(const sd_bodies *A, assembly *a, const identity *who, int count, int all)
 {
   sd_tie *t = A->tie;
-  const int number = sd_bodies_count(A) + t->others;
+  sd_tie_border *e = &t->border;
+  const int number = sd_bodies_count(A) + e->others;
   int wanted = 0;
   for (int k = 0; k < count; k++)
     wanted = wanted || (a->strong[who[k].copy] && (all || is_above(t, a, who[k].copy)));
@@ -170,7 +171,7 @@ static void take_other(const sd_bodies *A, assembly *a, const identity *who, int
   if (!wanted) return;
   const double *row = a->place + SD_PLACE * (long) who->copy;
   memcpy(t->scale + 6 * (long) number, row + SD_PLACE_SCALE, 6 * sizeof(double));
-  t->other[t->others++] = (sd_tie_other){who->rank, who->body};
+  e->other[e->others++] = (sd_tie_other){who->rank, who->body};
 }
 
 /* Those above, or all */
@@ -260,13 +261,14 @@ static sd_status reserve_diagonal(const sd_bodies *A)
 static sd_status factor_reserve(const sd_bodies *A, assembly *a)
 {
   sd_tie *t = A->tie;
+  sd_tie_border *e = &t->border;
   a->copies = copies_of(A);
   const size_t bodies = (size_t) sd_bodies_count(A), copies = (size_t) a->copies, number = sizeof(double);
-  t->others = t->lents = t->aways = t->severed = 0;
+  e->others = e->lents = e->aways = e->severed = 0;
   const int there = assembly_reserve(A, a) &&
-      sd_reserve(&t->weight, number, bodies, &t->most_weights) &&
-      sd_reserve(&t->shared, sizeof(int), bodies, &t->most_shared) &&
-      sd_reserve(&t->other, sizeof(*t->other), copies, &t->most_others) &&
+      sd_reserve(&e->weight, number, bodies, &e->most_weights) &&
+      sd_reserve(&e->shared, sizeof(int), bodies, &e->most_shared) &&
+      sd_reserve(&e->other, sizeof(*e->other), copies, &e->most_others) &&
       sd_reserve(&t->all, number, 6 * (bodies + copies), &t->most_all);
   return there ? SD_OK : SD_ENOMEMORY;
 }
@@ -287,18 +289,18 @@ static sd_status eliminate_inner(const sd_bodies *A, assembly *a)
   return status == SD_OK ? sd_block_cholesky_factor(&t->factor, drop) : status;
 }
 
-/* t->weight of bodies of this rank: in how many factors each is; t->away. One that nobody wants stays here. */
+/* weight of bodies of this rank: in how many factors each is; away. One that nobody wants stays here. */
 static void know_lent(const sd_bodies *A, assembly *a)
 {
-  sd_tie *t = A->tie;
-  memset(t->weight, 0, sizeof(double) * (size_t) sd_bodies_count(A));
-  for (int k = 0; k < t->lents; k++)
-    if (t->lent[k] >= 0) t->weight[t->lent[k]] += 1.0;
+  sd_tie_border *e = &A->tie->border;
+  memset(e->weight, 0, sizeof(double) * (size_t) sd_bodies_count(A));
+  for (int k = 0; k < e->lents; k++)
+    if (e->lent[k] >= 0) e->weight[e->lent[k]] += 1.0;
   for (int b = 0; b < sd_bodies_count(A); b++) {
     if (a->solver[b] == NOBODYS) continue;
-    if (t->weight[b] == 0.0) a->here[b] = 1;
-    if (a->here[b]) t->weight[b] += 1.0;
-    else t->away[t->aways++] = b;
+    if (e->weight[b] == 0.0) a->here[b] = 1;
+    if (a->here[b]) e->weight[b] += 1.0;
+    else e->away[e->aways++] = b;
   }
 }
 
@@ -309,8 +311,8 @@ static sd_status assemble_border(const sd_bodies *A, assembly *a)
   const int all = sd_bodies_count(A) + a->bodies_there;
   sd_status status = SD_OK;
   know_lent(A, a);
-  for (int k = 0; k < t->aways; k++) sd_block_cholesky_leave_out(&t->factor, t->away[k]);
-  for (int o = sd_bodies_count(A) + t->others; o < all; o++) sd_block_cholesky_leave_out(&t->factor, o);
+  for (int k = 0; k < t->border.aways; k++) sd_block_cholesky_leave_out(&t->factor, t->border.away[k]);
+  for (int o = sd_bodies_count(A) + t->border.others; o < all; o++) sd_block_cholesky_leave_out(&t->factor, o);
   for (long k = 0; k < t->L->count + t->L->beyond && status == SD_OK; k++)
     if (t->L->pair[k][1] >= t->L->n) status = add_block(A, a, k);
   return status;
@@ -319,31 +321,33 @@ static sd_status assemble_border(const sd_bodies *A, assembly *a)
 /* W of this rank's bodies by how many factors each is in; and who is severed */
 static sd_status weigh(const sd_bodies *A, const assembly *a)
 {
-  sd_tie *t = A->tie;
+  sd_tie_border *e = &A->tie->border;
+  const sd_world *world = &A->tie->L->world;
   double severed = 0.0;
-  t->shares = 0;
+  e->shares = 0;
   for (int b = 0; b < sd_bodies_count(A); b++) {
-    const double factors = t->weight[b];
+    const double factors = e->weight[b];
     const int tight = a->largest[b] >= stiff * stiff;
     if (factors <= 1.0) continue;
-    t->weight[b] = 1.0 / sqrt(tight ? 2.0 : factors);
-    t->shared[t->shares++] = b;
+    e->weight[b] = 1.0 / sqrt(tight ? 2.0 : factors);
+    e->shared[e->shares++] = b;
     if (tight) severed = 1.0;
   }
-  const sd_status status = sd_world_sum(&t->L->world, &severed, 1);
-  t->severed = t->L->world.ranks > 2 && severed > 0.0;
+  const sd_status status = sd_world_sum(world, &severed, 1);
+  e->severed = world->ranks > 2 && severed > 0.0;
   return status;
 }
 
 /* On all ranks together */
 static sd_status share_border(const sd_bodies *A, assembly *a, sd_status mine)
 {
+  const sd_tie_border *e = &A->tie->border;
   double meeting = mine == SD_OK && borders_meet(A, a);
   sd_status status = sd_world_sum(&A->tie->L->world, &meeting, 1);
   if (mine == SD_OK) know_others(A, a, meeting > 0.0);
   status = sd_tie_border_lend(A, mine == SD_OK ? status : mine);
-  for (int k = 0; k < A->tie->lents; k++)
-    if (a->solver[A->tie->lent[k]] == NOBODYS) A->tie->lent[k] = -1;
+  for (int k = 0; k < e->lents; k++)
+    if (a->solver[e->lent[k]] == NOBODYS) e->lent[k] = -1;
   if (status == SD_OK) status = sd_tie_border_share(A);
   return status == SD_OK ? assemble_border(A, a) : status;
 }

@@ -3,41 +3,42 @@
 
 #include <string.h>
 
-static void weigh_shared(const sd_tie *t)
+static void weigh_shared(const sd_tie_border *b, double *all)
 {
-  for (int k = 0; k < t->shares; k++)
-    for (int d = 0; d < 6; d++) t->all[6 * (long) t->shared[k] + d] *= t->weight[t->shared[k]];
+  for (int k = 0; k < b->shares; k++)
+    for (int d = 0; d < 6; d++) all[6 * (long) b->shared[k] + d] *= b->weight[b->shared[k]];
 }
 
 /* This rank's bodies to the factors that they are in, where bodies that are not at its border are 0 */
-static void send_lent(const sd_tie *t)
+static void send_lent(const sd_tie_border *b, const double *all)
 {
-  memset(t->sent, 0, sizeof(double) * 6 * (size_t) t->lents);
-  for (long k = 0; k < t->lents; k++)
-    if (t->lent[k] >= 0) memcpy(t->sent + 6 * k, t->all + 6 * (long) t->lent[k], 6 * sizeof(double));
+  memset(b->sent, 0, sizeof(double) * 6 * (size_t) b->lents);
+  for (long k = 0; k < b->lents; k++)
+    if (b->lent[k] >= 0) memcpy(b->sent + 6 * k, all + 6 * (long) b->lent[k], 6 * sizeof(double));
 }
 
-static void add_lent(const sd_tie *t)
+static void add_lent(const sd_tie_border *b, double *all)
 {
-  for (long k = 0; k < t->lents; k++)
-    for (int d = 0; d < 6 && t->lent[k] >= 0; d++) t->all[6 * (long) t->lent[k] + d] += t->sent[6 * k + d];
+  for (long k = 0; k < b->lents; k++)
+    for (int d = 0; d < 6 && b->lent[k] >= 0; d++) all[6 * (long) b->lent[k] + d] += b->sent[6 * k + d];
 }
 
 /* What all ranks together do to bodies at borders: forth and back are each rank's own. */
 static sd_status meet_at_borders(const sd_bodies *A)
 {
   const sd_tie *t = A->tie;
+  const sd_tie_border *b = &t->border;
   const sd_world *world = &t->L->world;
   double *others = t->all + 6 * (long) sd_bodies_count(A);
-  weigh_shared(t);
-  send_lent(t);
-  sd_status status = world->exchange(world->ctx, t->sent, t->lend, others, t->borrow);
+  weigh_shared(b, t->all);
+  send_lent(b, t->all);
+  sd_status status = world->exchange(world->ctx, b->sent, b->lend, others, b->borrow);
   if (status != SD_OK) return status;
   sd_block_cholesky_middle(&t->factor, t->all);
-  for (int k = 0; k < t->aways; k++) memset(t->all + 6 * (long) t->away[k], 0, 6 * sizeof(double));
-  status = world->exchange(world->ctx, others, t->borrow, t->sent, t->lend);
-  add_lent(t);
-  weigh_shared(t);
+  for (int k = 0; k < b->aways; k++) memset(t->all + 6 * (long) b->away[k], 0, 6 * sizeof(double));
+  status = world->exchange(world->ctx, others, b->borrow, b->sent, b->lend);
+  add_lent(b, t->all);
+  weigh_shared(b, t->all);
   return status;
 }
 
@@ -48,7 +49,7 @@ sd_status sd_tie_precondition(const sd_bodies *A, const double *r, double *z)
   sd_status status = SD_OK;
   for (long j = 0; j < size; j++) t->all[j] = t->scale[j] * r[j];
   if (sd_tie_is_layered(A)) {
-    memset(t->all + size, 0, sizeof(double) * 6 * (size_t) t->others);
+    memset(t->all + size, 0, sizeof(double) * 6 * (size_t) t->border.others);
     sd_block_cholesky_forth(&t->factor, t->all);
     status = meet_at_borders(A);
     sd_block_cholesky_back(&t->factor, t->all);

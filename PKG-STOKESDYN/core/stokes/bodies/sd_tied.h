@@ -19,6 +19,35 @@ typedef struct {
   int rank, body;
 } sd_tie_other;
 
+/* The bodies at borders between ranks (sd_tie_border.h) */
+typedef struct {
+  /* of the factor here, in ascending order */
+  sd_tie_other *other;
+  int others;
+  /* does a stiff pair chain bodies together that more than two ranks share? The same on all of them */
+  int severed;
+  /* [bodies] W of sd_tie_factor.h; [shares] bodies of this rank where it is not 1 */
+  double *weight;
+  int *shared, shares;
+  /* [lents] bodies of this rank in factors of others, for one rank after the other, -1: by rounding it is
+   * not at this rank's border; [aways] those at borders that the factor here lacks. [ranks] so many
+   * numbers of the first go to each rank, and so many of `others` come from it, 6 a body; [6 lents] room
+   * for those that go */
+  int *lent, *away, *lend, *borrow, lents, aways;
+  double *sent;
+  size_t most_weights, most_shared, most_others, most_lent, most_away, most_lend, most_borrow, most_sent;
+} sd_tie_border;
+
+/* X, what the model itself resists when spheres approach (sd_tie_approach.h) */
+typedef struct {
+  /* by pairs of L and those beyond, -c d d^T; by spheres, X_ii of translations, xx yy zz xy xz yz */
+  double *c, *own;
+  /* what springs see of spheres and do to them [2 9 spheres], and see of those of other ranks [9 others]; 6
+   * where rows are spheres */
+  double *seen, *there;
+  size_t most_c, most_own, most_seen, most_there;
+} sd_tie_springs;
+
 /* Zero-initialise, set L, whose rows are the spheres, and `above`; sd_tie_free in the end. */
 typedef struct sd_tie {
   sd_lubrication *L;
@@ -30,12 +59,10 @@ typedef struct sd_tie {
   /* For sd_tie_make, the same on all ranks: is the factor of these bodies, with these numbers? Then it stays
    * where H has hardly changed (sd_tie_kept.h). And what came of it: was it made anew? */
   int keep, anew;
-  /* of the bodies of this rank and of `others` of other ranks (sd_tie_factor.h), in ascending order */
+  /* of the bodies of this rank and of others at its borders (sd_tie_factor.h) */
   sd_block_cholesky factor;
-  sd_tie_other *other;
-  int others;
-  /* does a stiff pair chain bodies together that more than two ranks share? The same on all of them */
-  int severed;
+  sd_tie_border border;
+  sd_tie_springs springs;
   /* [6 bodies] translations in H_ii of then, scaled, when the factor was made: xx yy zz xy xz yz; of so many
    * bodies, -1: there is no factor */
   double *made_of;
@@ -43,22 +70,9 @@ typedef struct sd_tie {
   /* [6 (bodies + others)] 1 over the roots of the diagonal of H_0; 0: nobody is near to this body,
    * or this of its velocity is given */
   double *scale;
-  /* [bodies] W of sd_tie_factor.h; [shares] bodies of this rank where it is not 1 */
-  double *weight;
-  int *shared, shares;
-  /* [lents] bodies of this rank in factors of others, for one rank after the other, -1: by rounding it is
-   * not at this rank's border; [aways] those at borders that the factor here lacks. [ranks] so many
-   * numbers of the first go to each rank, and so many of `others` come from it, 6 a body; [6 lents] room
-   * for those that go */
-  int *lent, *away, *lend, *borrow, lents, aways;
-  double *sent;
-  /* X by pairs of L and those beyond, c; by spheres, X_ii of translations, xx yy zz xy xz yz; what springs
-   * see of spheres and do to them [2 9 spheres], [9 others], 6 where rows are spheres */
-  double *spring, *stiff, *face, *faces_there;
   /* scratch: by bodies and others */
   double *all;
-  size_t most_scales, most_weights, most_shared, most_others, most_lent, most_away, most_lend, most_borrow,
-      most_sent, most_springs, most_stiff, most_all, most_faces, most_faces_there, most_made_of;
+  size_t most_made_of, most_scales, most_all;
 } sd_tie;
 
 /* Do ranks share bodies at their borders? */

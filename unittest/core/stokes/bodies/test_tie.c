@@ -256,7 +256,7 @@ static void model_resists_approach_alone(void **state)
       if (p % 6 > 2 || q % 6 > 2) assert_true(X[p][q] == 0.0);
       largest = fmax(largest, X[p][q]);
       if (p / 6 != q / 6) continue;
-      const double *own = t->tie.stiff + 6 * (p / 6);
+      const double *own = t->tie.springs.own + 6 * (p / 6);
       if (p % 6 < 3 && q % 6 < 3) CHECK_NEAR(own[sd_symmetric3_at(p % 6, q % 6)], X[p][q], 1e-12 * largest);
     }
   assert_true(largest > 0.5 * P6);

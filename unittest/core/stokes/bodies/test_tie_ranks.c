@@ -112,10 +112,10 @@ static void work(rank *r, const void *ctx)
       found->before[to] = before[6 * i + d];
       found->v[to] = v[6 * i + d];
     }
-  found->others[r->me] = tie.others;
-  found->lents[r->me] = tie.lents;
-  found->aways[r->me] = tie.aways;
-  found->shares[r->me] = tie.shares;
+  found->others[r->me] = tie.border.others;
+  found->lents[r->me] = tie.border.lents;
+  found->aways[r->me] = tie.border.aways;
+  found->shares[r->me] = tie.border.shares;
   if (r->me == 0) {
     found->products = report.products;
     found->within = tie.products;
