@@ -1,6 +1,7 @@
 /* Of body_scene: spheres as shells of points (keyword multiblob): where the points stand, and what flows there. */
 #include "body_scene.h"
 
+#include "sd_flow_points.h"
 #include "sd_linear.h"
 
 #include <algorithm>
@@ -47,26 +48,14 @@ void BodyScene::place_points()
   sphere.resize(points);
   for (size_t k = 0; k < n; k++)
     std::fill_n(sphere.begin() + of_points.spheres.first[k], scene.shells->points_of_row(k), (int) k);
-  D.assign(3 * points + 3, 1.0);
-  for (size_t k = 0; k < points; k++) {
-    const double w = spheres.w[sphere[k]], drag = 6.0 * SD_PI * b[k] / (w * w);
-    for (int d = 0; d < 3 && b[k] > 0.0; d++) D[3 * k + d] = drag;
-  }
+  D.resize(3 * points + 3);
+  sd_multiblob_drags(&of_points, b, D.data());
 }
 
-/* u [3 points] = velocity + gradient r, and with a curvature as it carries the point; by rows */
 void BodyScene::flow_at_points(const double *of_spheres, int stride)
 {
-  const sd_multiblob_spheres &spheres = of_points.spheres;
-  for (size_t k = 0; k < sphere.size(); k++) {
-    const size_t i = sphere[k];
-    double change[3];
-    sd_multiply3(&slope[9 * i], &r[3 * k], change);
-    if (!bend.empty())
-      sd_flow_bend(&bend[SD_FLOW_SECOND * i], &r[3 * k],
-                   sd_multiblob_of(of_points.model, &spheres, i)->point * spheres.a[i], change);
-    for (int d = 0; d < 3; d++) u[3 * k + d] = of_spheres[stride * i + d] + change[d];
-  }
+  const sd_flow_spheres flow = {of_spheres, stride, slope.data(), bend.empty() ? nullptr : bend.data()};
+  sd_flow_at_points(&of_points, &flow, u.data());
 }
 
 /* Of spheres that the fluid passes with this slip, velocity and spin [6 n]; strains and bends are the

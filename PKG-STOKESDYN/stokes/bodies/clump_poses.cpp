@@ -174,17 +174,14 @@ sd_clump_motion ClumpPoses::look_at(const Clump &clump) const
 
 void ClumpPoses::velocities(int width, const ToAtom &take)
 {
-  double fluid_there[6], V[6], move[6], by_fluid[6], load[6];
+  double fluid_there[6], V[6], by_fluid[6], load[6], D[6];
   for (int i : lone()) {
     const bool known = given.known && given.known(i, V);
     ambient.fluid(i, fluid_there);
     given.load(i, load);
-    for (int d = 0; d < width; d++) {
-      const double k = ambient.resistance(i, d), f = load[d];
-      move[d] = known ? V[d] : fluid_there[d] + f / k;
-      by_fluid[d] = known ? k * (fluid_there[d] - V[d]) : -f;
-    }
-    take(i, move, by_fluid);
+    for (int d = 0; d < width; d++) D[d] = ambient.resistance(i, d);
+    sd_sphere_move_alone(width, D, fluid_there, known ? nullptr : load, V, by_fluid);
+    take(i, V, by_fluid);
   }
   if (!rigid.settings.on) return;
   enum { ROW = 12 };    // velocity, angular velocity, force, torque

@@ -116,7 +116,7 @@ void Lubrication::place_films(Scene &where, const Ambient *fluid, bool noisy)
 void Lubrication::add_wall(const Scene &where, const sd_wall &wall)
 {
   const sd_spheres s = where.local();
-  std::vector<double> r;
+  std::vector<double> r, b;
   double normal[3] = {0.0};
   normal[wall.axis] = wall.sign;
   for (size_t k = 0; k < (size_t) where.size(); k++) {
@@ -124,11 +124,10 @@ void Lubrication::add_wall(const Scene &where, const sd_wall &wall)
     double B[36], E[6];
     if (shells.on()) {
       const sd_multiblob *model = &where.shells->model_of(s.a[k]);
+      const sd_multiblob_spheres one = {x, s.a + k, where.shells->turn_of(k), nullptr, 1, nullptr, nullptr};
       r.resize(3 * model->n);
-      for (int p = 0; p < model->n; p++) {
-        sd_multiply3(where.shells->turn_of(k), model->r + 3 * p, &r[3 * p]);
-        for (int d = 0; d < 3; d++) r[3 * p + d] *= s.a[k];
-      }
+      b.resize(model->n);
+      sd_multiblob_expand(model, &one, r.data(), nullptr, b.data());
       const sd_multiblob_sphere sphere = {model, x, s.a[k], r.data(), shells.one_body};
       check(sd_multiblob_wall_film(&sphere, &wall, settings.gap, eta, flow, B, E));
     } else {
@@ -192,8 +191,7 @@ sd_status Lubrication::draw(const Scene &where, const sd_random_key &key, double
 
 void Lubrication::forces(const double *v, double *out)
 {
-  check(sd_lubrication_apply(&near, v, out));
-  for (long j = 0; j < 6 * (long) near.n; j++) out[j] = near.carried[j] - out[j];
+  check(sd_lubrication_forces(&near, v, out));
 }
 
 double Lubrication::memory_usage() const

@@ -43,37 +43,14 @@ double Guess::solves_kept(Question asked) const
   return now != 0 && now == memory->global.guess ? memory->global.solutions : 0.0;
 }
 
-/* On the line through the last two answers (1), or as the last one was (0): an atom that had none before is no
- * line's */
-static double on_line(double line, double last, double before)
+/* Of this solve. Where a run begins, spheres stand as in the step before. */
+sd_guess_answers Guess::answers(double kept) const
 {
-  return before != 0.0 ? last + line * (last - before) : last;
-}
-
-/* An answer takes the place of the last one, and this that of the one before; and which of them, or the line
- * through them, it was nearer to. Where a run begins, spheres stand as in the step before: then it takes the place
- * of the last one alone, and the line is good if it is nearer to that one than the one before was. */
-struct Guess::Answer {
-  const bool again;
-  double off_last = 0.0, off_line = 0.0;
-
-  void take(double now, double unit, double &last, double &before)
-  {
-    const double change = (now - last) / unit, along = (on_line(1.0, last, before) - last) / unit;
-    off_last += again ? along * along : change * change;
-    off_line += again ? change * change : (change - along) * (change - along);
-    if (!again) before = last;
-    last = now;
-  }
-};
-
-Guess::Answer Guess::answer(double kept) const
-{
-  return {kept > 0.0 && update->setupflag};
+  return {kept > 0.0 && update->setupflag, 0.0, 0.0};
 }
 
 /* Is the next guess on the line? The same on all ranks */
-void Guess::choose(const Answer &found, double kept)
+void Guess::choose(const sd_guess_answers &found, double kept)
 {
   double off[2] = {found.off_last, found.off_line};
   MPI_Allreduce(MPI_IN_PLACE, off, 2, MPI_DOUBLE, MPI_SUM, world);
@@ -121,14 +98,12 @@ void Guess::keep(Question asked, const Found &found)
   else if (!shells.settings.on() && asked != FORCES)
     keep_spheres(found.l, kept);
   global.guess = number(asked);
-  global.solutions = answer(kept).again ? kept : std::min(2.0, kept + 1.0);
+  global.solutions = answers(kept).again ? kept : std::min(2.0, kept + 1.0);
 }
 
 // --- where velocities are given --------------------------------------------------------------------
 
-/* F = D (s + v') with the v' of the last solve, or on the line through the last two. Made from v'
- * and not from F, the guess has the slip of now: it is exact for spheres that nobody disturbs, at
- * any tolerance. */
+/* With the v' of the last solve, or on the line through the last two */
 std::vector<double> Guess::recall_forces() const
 {
   const size_t m = width();
@@ -140,20 +115,19 @@ std::vector<double> Guess::recall_forces() const
       out[d] = line ? 2.0 * last - before[d] : last;
     }
   });
-  for (size_t j = 0; j < m * scene.size(); j++)
-    l[j] = -(bodies.resistance[j] * (bodies.flow[j] + l[j]));
+  sd_guess_exerted(m * scene.size(), bodies.resistance.data(), bodies.flow.data(), l.data());
   return l;
 }
 
-/* v' = D^-1 F - s of the solution, and what the next guess is made of. Spheres that see nobody have
- * none: not what the tolerance of a solve from zero has left of theirs either. */
+/* v' of the solution, and what the next guess is made of. Spheres that see nobody have none: not what the
+ * tolerance of a solve from zero has left of theirs either. */
 void Guess::keep_perturbation(const std::vector<double> &exerted)
 {
   const size_t m = width();
   std::vector<double> perturbed(m * scene.size() + m, 0.0);
   for (size_t k = 0; k < (size_t) scene.size(); k++)
-    for (size_t j = m * k; j < m * (k + 1) && !scene.alone((int) k); j++)
-      perturbed[j] = -exerted[j] / bodies.resistance[j] - bodies.flow[j];
+    if (!scene.alone((int) k))
+      sd_guess_perturbation(m, &bodies.resistance[m * k], &bodies.flow[m * k], &exerted[m * k], &perturbed[m * k]);
   scene.to_atoms((int) m, perturbed.data(), [&](int i, const double *now) {
     double *row = memory->rows.writable(i), *before = row + memory->before();
     for (size_t d = 0; d < m; d++) {
@@ -176,7 +150,7 @@ std::vector<double> Guess::recall_motions() const
   const size_t at_before = line != 0.0 ? memory->velocities_before() : 0;
   std::vector<double> v = scene.rows((int) m, [&](int i, double *out) {
     const double *row = memory->rows[i], *before = row + at_before;
-    for (size_t d = 0; d < m; d++) out[d] = on_line(line, row[State::at(State::VPRIME, d)], before[d]);
+    for (size_t d = 0; d < m; d++) out[d] = sd_guess_at(line, row[State::at(State::VPRIME, d)], before[d]);
   });
   for (size_t j = 0; j < m * scene.size(); j++) v[j] += bodies.flow[j];
   return v;
@@ -185,7 +159,7 @@ std::vector<double> Guess::recall_motions() const
 void Guess::keep_motions(const std::vector<double> &v, double kept)
 {
   const size_t m = width();
-  Answer found = answer(kept);
+  sd_guess_answers found = answers(kept);
   double relative[6];
   const auto at = [&](size_t k) {
     for (size_t d = 0; d < m; d++) relative[d] = v[m * k + d] - bodies.flow[m * k + d];
@@ -196,7 +170,7 @@ void Guess::keep_motions(const std::vector<double> &v, double kept)
     for (size_t d = 0; d < m; d++) {
       double &last = row[State::at(State::VPRIME, d)];
       if (lines())
-        found.take(now[d], 1.0, last, row[memory->velocities_before() + (int) d]);
+        sd_guess_take(&found, now[d], 1.0, &last, &row[memory->velocities_before() + (int) d]);
       else
         last = now[d];
     }
@@ -210,19 +184,19 @@ std::vector<double> Guess::recall_spheres(double line) const
   return scene.rows((int) width(), [&](int i, double *out) {
     const double *row = memory->rows[i], *before = row + at_before;
     for (size_t d = 0; d < width(); d++)
-      out[d] = -on_line(line, row[State::at(State::FORCE, d)], before[d]);
+      out[d] = -sd_guess_at(line, row[State::at(State::FORCE, d)], before[d]);
   });
 }
 
 void Guess::keep_spheres(const std::vector<double> &l, double kept)
 {
-  Answer found = answer(kept);
+  sd_guess_answers found = answers(kept);
   scene.to_atoms((int) width(), l.data(), [&](int i, const double *now) {
     double *row = memory->rows.writable(i), *before = row + memory->forces_before();
     for (size_t d = 0; d < width(); d++) {
       double &last = row[State::at(State::FORCE, d)];
       if (lines())
-        found.take(-now[d], d < 3 ? 1.0 : atom->radius[i], last, before[d]);
+        sd_guess_take(&found, -now[d], d < 3 ? 1.0 : atom->radius[i], &last, &before[d]);
       else
         last = -now[d];
     }
@@ -268,7 +242,7 @@ std::vector<double> Guess::recall_points(double line, std::vector<double> found_
     const auto read = [&](int i, double *out) {
       const auto of = memory->points_of(i, kind, n);
       for (int d = 0; d < 3 * n; d++)
-        out[d] = of.now ? on_line(line, of.now[d], of.before[d]) : 0.0;
+        out[d] = of.now ? sd_guess_at(line, of.now[d], of.before[d]) : 0.0;
     };
     scene.rows_to(3 * n, read, [&](size_t k) {
       return kinds[k] == kind ? &found_then[3 * (size_t) first[k]] : nullptr;
@@ -283,7 +257,7 @@ void Guess::keep_points(const std::vector<double> &l, double kept)
 {
   if (memory->shell_points == 0) return;
   const int *first = shells.first_of_rows(), *kinds = shells.kinds_of_rows();
-  Answer found = answer(kept);
+  sd_guess_answers found = answers(kept);
   for (int kind = 0; kind < shells.kinds(); kind++) {
     const int n = shells.model(kind).n;
     std::vector<double> turned(3 * n);
@@ -297,7 +271,7 @@ void Guess::keep_points(const std::vector<double> &l, double kept)
     };
     scene.some_to_atoms(3 * n, at, [&](int i, const double *row) {
       const auto of = memory->writable_points(i, kind, n);
-      for (int d = 0; d < 3 * n && of.now; d++) found.take(row[d], 1.0, of.now[d], of.before[d]);
+      for (int d = 0; d < 3 * n && of.now; d++) sd_guess_take(&found, row[d], 1.0, &of.now[d], &of.before[d]);
     });
   }
   choose(found, kept);

@@ -16,6 +16,8 @@
 #include "pointers.h"
 #include "settings.h"
 
+#include "sd_guess.h"
+
 #include <cstdint>
 #include <vector>
 
@@ -62,11 +64,10 @@ class Guess : protected LAMMPS_NS::Pointers {
   const Shells &shells;
   const StokesSettings &settings;
 
-  struct Answer;
   /* Are guesses of motions on lines through two answers? */
   bool lines() const { return memory->lines || memory->shell_points > 0; }
-  Answer answer(double kept) const;
-  void choose(const Answer &found, double kept);
+  sd_guess_answers answers(double kept) const;
+  void choose(const sd_guess_answers &found, double kept);
   /* 1: the next guess is on it; 0: it is the last answer */
   double line() const;
   size_t width() const { return settings.scene.rotation ? 6 : 3; }

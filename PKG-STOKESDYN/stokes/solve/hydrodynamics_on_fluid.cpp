@@ -16,8 +16,6 @@ namespace StokesDyn {
 
 using State = FixStokesDynamicsState;
 
-/* What keeps a member of a clump in its place is what it exerts on the fluid less what acts on it, but for
- * random forces of films: these come from nowhere. */
 void Hydrodynamics::stress(std::vector<double> &of_atoms)
 {
   const bool films_stand = standing();
@@ -27,11 +25,12 @@ void Hydrodynamics::stress(std::vector<double> &of_atoms)
   const size_t n = scene.size();
   std::vector<double> points(6 * n + 6, 0.0), films(6 * n + 6, 0.0), f(3 * n + 3);
   sd_multiblob_moments((int) n, shells.first_of_rows(), now.r.data(), now.l.data(), points.data());
-  const std::vector<double> &random = solver.random_forces();
-  for (size_t k = 0; k < n && overdamped; k++)
-    for (size_t d = 0; d < 3; d++)
-      f[3 * k + d] = solver.exerted[6 * k + d] - bodies.F[6 * k + d] + (random.empty() ? 0.0 : random[6 * k + d]);
-  if (overdamped) add_on_members(f, points.data());
+  if (overdamped) {
+    const std::vector<double> &random = solver.random_forces();
+    sd_bodies_bonds(&bodies.bodies, solver.exerted.data(), bodies.F.data(), random.empty() ? nullptr : random.data(),
+                    f.data());
+    add_on_members(f, points.data());
+  }
   for (size_t j = 0; j < moments_left.size(); j++) points[j] += moments_left[j];
   if (settings.lubrication.on) {
     const double *v = overdamped ? solver.v.data() : films_v.data();
@@ -48,8 +47,9 @@ void Hydrodynamics::stress(std::vector<double> &of_atoms)
 
 void Hydrodynamics::add_on_members(const std::vector<double> &f, double *S) const
 {
-  for (size_t k = scene.lone(); k < (size_t) scene.size(); k++)
-    sd_multiblob_moment(1, &bodies.arms()[3 * k], &f[3 * k], S + 6 * k);
+  const size_t first = scene.lone();
+  const int members = scene.size() - (int) first;
+  if (members > 0) sd_multiblob_moments_at(members, &bodies.arms()[3 * first], &f[3 * first], S + 6 * first);
 }
 
 Hydrodynamics::Points Hydrodynamics::points_that_stand() const

@@ -53,7 +53,7 @@ void Solve::draw_slip(const Draw &draw)
   if (!divided) process(A, nullptr);
   if (status == SD_OK && divided) status = sd_mobility_draw(scene.mobility(), &draw.of_waves, waves.data());
   draw.report(status, report, divided);
-  for (size_t j = 0; j < rows; j++) slip[j] = draw.scale * (slip[j] + (divided ? waves[j] : 0.0));
+  sd_noise_join((long) rows, draw.scale, divided ? waves.data() : nullptr, slip.data());
 }
 
 /* How each body follows, and whether that leaves nothing of the drift: not where the mobility is not that of
@@ -94,7 +94,7 @@ void Solve::draw(const Draw &draw)
     status = bodies.draw_films(draw.of_films, pushed.data());
     if (status == SD_OK) status = sd_tie_make(&A, {scratch.data(), &scratch[by_bodies]});
   }
-  for (double &force : pushed) force *= draw.scale;
+  sd_noise_join((long) pushed.size(), draw.scale, nullptr, pushed.data());
   find_followers();
   of_points.assign(6 * count + 6, 0.0);
   of_films.assign(6 * count + 6, 0.0);

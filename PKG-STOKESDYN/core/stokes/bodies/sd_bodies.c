@@ -266,3 +266,13 @@ sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
   const sd_status last = finish(&c, answer);
   return last == SD_OK ? status : last;
 }
+
+void sd_bodies_bonds(const sd_bodies *A, const double *exerted, const double *F, const double *random,
+                     double *f)
+{
+  for (long k = 0; k < A->spheres.n; k++)
+    for (int d = 0; d < 3; d++) {
+      const long at = A->spheres.width * k + d;
+      f[3 * k + d] = exerted[at] - F[at] + (random ? random[at] : 0.0);
+    }
+}

@@ -98,6 +98,12 @@ long sd_bodies_work(const sd_bodies *A);
 sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
                           const sd_bodies_answer *answer, double *work, sd_bodies_report *report);
 
+/* What keeps each sphere in its place on its body, f [3 spheres]: what it exerts on the fluid less its load
+ * F, but for random forces of films in that, `random` [spheres] (NULL: none), which come from nowhere. Over a
+ * body that is free it adds up to these. */
+void sd_bodies_bonds(const sd_bodies *A, const double *exerted, const double *F, const double *random,
+                     double *f);
+
 /* Clumps with shells are carried by a strain otherwise than as spheres: adds K dE E to the flow u
  * [points] at their points. gradient [9 shaped]: of the fluid velocity over each body of a shape.
  * work [6 bodies + 6 spheres + rows]. */

@@ -62,5 +62,16 @@ static inline void sd_clump_shift_velocity(const double arm[3], double V[6])
 void sd_clump_move_alone(const sd_clump_placed *placed, const sd_clump_motion *m, const double *load,
                          double V[6], const sd_clump_rows *out);
 
+/* The same of a lone sphere of which each of `width` components (6: with rotation) has the drag D, in a fluid
+ * that moves with u: F, force and torque of the fluid on it. */
+static inline void sd_sphere_move_alone(int width, const double *D, const double *u, const double *load,
+                                        double *V, double *F)
+{
+  for (int d = 0; d < width; d++) {
+    if (load) V[d] = u[d] + load[d] / D[d];
+    F[d] = load ? -load[d] : D[d] * (u[d] - V[d]);
+  }
+}
+
 SD_END_C
 #endif

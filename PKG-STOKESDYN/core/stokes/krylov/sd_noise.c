@@ -201,3 +201,8 @@ sd_status sd_noise_velocities(sd_noise *s, const sd_noise_matrix *M, const doubl
   for (long j = 0; j < M->n; j++) y[j] = M->D[j] > 0.0 ? y[j] / sqrt(M->D[j]) : 0.0;
   return status;
 }
+
+void sd_noise_join(long n, double scale, const double *other, double *y)
+{
+  for (long j = 0; j < n; j++) y[j] = scale * (y[j] + (other ? other[j] : 0.0));
+}

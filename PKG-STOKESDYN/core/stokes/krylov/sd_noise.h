@@ -65,6 +65,10 @@ typedef struct {
 sd_status sd_noise_velocities(sd_noise *s, const sd_noise_matrix *M, const double *w, double tolerance,
                               double *y, sd_noise_report *report);
 
+/* y [n] = scale (y + other): all of what is drawn in parts (other NULL: y alone), as a velocity or a force of
+ * noise, scale sqrt(2 kT/dt) */
+void sd_noise_join(long n, double scale, const double *other, double *y);
+
 void sd_noise_free(sd_noise *s);
 
 SD_END_C

@@ -115,6 +115,8 @@ void sd_lubrication_add_block(const sd_lubrication_link *l, double B[36]);
 void sd_lubrication_own_block(const sd_lubrication *L, long i, double B[36]);
 /* out = L V, rows [6 n]: no aliasing. ctx is an sd_lubrication. SD_OK or that of refresh. */
 sd_status sd_lubrication_apply(void *ctx, const double *V, double *out);
+/* What films do to the spheres: F [6 n] = carried - L V, likewise */
+sd_status sd_lubrication_forces(const sd_lubrication *L, const double *V, double *F);
 /* out = (L + X) V, X of translations alone: X_ij = -c d d^T of each pair, c [count]; X_ii: own [6 n], xx yy
  * zz xy xz yz. own and c NULL: 0 */
 sd_status sd_lubrication_apply_both(const sd_lubrication *L, const double *own, const double *c,

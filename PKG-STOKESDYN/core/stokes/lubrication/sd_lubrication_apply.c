@@ -11,6 +11,13 @@ sd_status sd_lubrication_apply(void *ctx, const double *V, double *out)
   return sd_lubrication_apply_both(L, NULL, NULL, V, out);
 }
 
+sd_status sd_lubrication_forces(const sd_lubrication *L, const double *V, double *F)
+{
+  const sd_status status = sd_lubrication_apply_both(L, NULL, NULL, V, F);
+  for (long j = 0; j < 6 * (long) L->n; j++) F[j] = L->carried[j] - F[j];
+  return status;
+}
+
 sd_status sd_lubrication_apply_both(const sd_lubrication *L, const double *own, const double *c,
                                     const double *V, double *out)
 {

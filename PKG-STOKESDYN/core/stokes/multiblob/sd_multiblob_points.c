@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "sd_constants.h"
 #include "sd_linear.h"
 
 static int inside(const double p[3], const double centre[3], double radius)
@@ -89,6 +90,17 @@ void sd_multiblob_add(const void *ctx, int begin, int end, const double *f, doub
   }
 }
 
+void sd_multiblob_drags(const sd_multiblob_additions *points, const double *b, double *D)
+{
+  const sd_multiblob_spheres *s = &points->spheres;
+  for (long i = 0; i < s->n; i++) {
+    const double w = points->w[i];
+    const long first = sd_multiblob_first(points->model, s, i);
+    for (long k = first; k < first + sd_multiblob_of(points->model, s, i)->n; k++)
+      for (int d = 0; d < 3; d++) D[3 * k + d] = b[k] > 0.0 ? 6.0 * SD_PI * b[k] / (w * w) : 1.0;
+  }
+}
+
 void sd_multiblob_moment(long points, const double *r, const double *f, double S[6])
 {
   static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
@@ -112,4 +124,9 @@ void sd_multiblob_forces(int spheres, const int *first, const double *f, double 
   for (long i = 0; i < spheres; i++)
     for (long k = first[i]; k < first[i + 1]; k++)
       for (int d = 0; d < 3; d++) F[3 * i + d] += f[3 * k + d];
+}
+
+void sd_multiblob_moments_at(int spheres, const double *arm, const double *F, double *S)
+{
+  for (long i = 0; i < spheres; i++) sd_multiblob_moment(1, arm + 3 * i, F + 3 * i, S + 6 * i);
 }

@@ -86,6 +86,9 @@ typedef struct {
  * for sd_bodies.add. */
 void sd_multiblob_add(const void *ctx, int begin, int end, const double *f, double *u);
 
+/* D [3 rows]: 6 pi eta b for each component of each point, of radius b [rows]; 1 of those left out */
+void sd_multiblob_drags(const sd_multiblob_additions *points, const double *b, double *D);
+
 /* First moments of the forces f of the points of a sphere about its centre, symmetric and traceless, xx
  * yy zz xy xz yz: S [6] += dev sym sum r_k f_k. f acts on the fluid; the stress of the suspension is
  * 2 eta E - (sum of S)/V. */
@@ -94,6 +97,9 @@ void sd_multiblob_moment(long points, const double *r, const double *f, double S
  * exert together, F [3 spheres] += sum f_k */
 void sd_multiblob_moments(int spheres, const int *first, const double *r, const double *f, double *S);
 void sd_multiblob_forces(int spheres, const int *first, const double *f, double *F);
+/* And those of these, F [3], each at its arm [3] from the centre of a body: S [6 spheres] += that. All that
+ * the spheres of a body have so is the first moment of its points about its own centre. */
+void sd_multiblob_moments_at(int spheres, const double *arm, const double *F, double *S);
 
 SD_END_C
 #endif

@@ -391,6 +391,39 @@ static void far_clumps_are_as_shells_everywhere(void **state)
   }
 }
 
+/* What keeps the members of free clumps in their places adds up to nothing over a clump; of the load that is random
+ * it adds up to that, which nothing else on the clump bears. */
+static void bonds_add_up_over_a_free_body(void **state)
+{
+  (void) state;
+  flock *f = flock_create(4, tetrahedron, ones, 1, 3, 4, 1.3);
+  flock_scatter(f, 0.2, 21);
+  uint64_t seed = 6;
+  double random[6 * FLOCK_MOST], bond[3 * FLOCK_MOST];
+  for (int j = 0; j < 6 * f->n; j++) {
+    f->F[j] = uniform(&seed, -1, 1);
+    random[j] = uniform(&seed, -1, 1);
+  }
+  const sd_bodies A = flock_place(f, 6);
+  assert_int_equal(flock_solve(f, &A, 0, 1e-8, 100), SD_OK);
+  for (int noisy = 0; noisy < 2; noisy++) {
+    double largest = 0.0;
+    sd_bodies_bonds(&A, f->exerted, f->F, noisy ? random : NULL, bond);
+    for (int j = 0; j < 3 * f->m * f->clumps; j++) largest = fmax(largest, fabs(bond[j]));
+    assert_true(largest > 0.1);
+    for (int b = 0; b < f->clumps; b++)
+      for (int d = 0; d < 3; d++) {
+        double sum = 0.0, of_noise = 0.0;
+        for (int i = f->m * b; i < f->m * (b + 1); i++) {
+          sum += bond[3 * i + d];
+          of_noise += random[6 * i + d];
+        }
+        CHECK_NEAR(sum, noisy ? of_noise : 0.0, 1e-12);
+      }
+  }
+  flock_free(f);
+}
+
 /* What makes the curvature negative is an error, not an answer: here a product with the wrong sign
  */
 static sd_status wrong_sign(void *ctx, const double *F, double *u)
@@ -428,6 +461,7 @@ int main(void)
       cmocka_unit_test(the_answer_is_a_guess_that_ends_the_loop),
       cmocka_unit_test(who_is_only_carried_costs_one_product),
       cmocka_unit_test(far_clumps_are_as_shells_everywhere),
+      cmocka_unit_test(bonds_add_up_over_a_free_body),
       cmocka_unit_test(negative_curvature_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

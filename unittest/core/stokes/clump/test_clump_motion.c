@@ -212,6 +212,24 @@ static void the_fluid_balances_what_acts_on_a_clump(void **state)
   }
 }
 
+/* What the fluid does to a sphere that moves freely under a load it does to one that is made to move so. */
+static void a_sphere_that_is_held_bears_what_moves_a_free_one(void **state)
+{
+  (void) state;
+  const double D[6] = {2.3, 2.3, 2.3, 0.7, 0.7, 0.7}, u[6] = {0.4, -0.1, 0.9, 1.3, -0.2, 0.3},
+               load[6] = {1.1, 0.6, -0.5, 0.2, -0.8, 0.9};
+  for (int width = 3; width <= 6; width += 3) {
+    double V[6], F[6], held[6];
+    sd_sphere_move_alone(width, D, u, load, V, F);
+    for (int d = 0; d < width; d++) CHECK_NEAR(D[d] * (V[d] - u[d]), load[d], 1e-15);
+    sd_sphere_move_alone(width, D, u, NULL, V, held);
+    for (int d = 0; d < width; d++) {
+      assert_true(F[d] == -load[d]);
+      CHECK_NEAR(held[d], F[d], 1e-15);
+    }
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -220,6 +238,7 @@ int main(void)
       cmocka_unit_test(linear_flow_is_found_exactly),
       cmocka_unit_test(fit_is_the_one_of_least_squares),
       cmocka_unit_test(drag_is_that_of_the_slip),
+      cmocka_unit_test(a_sphere_that_is_held_bears_what_moves_a_free_one),
       cmocka_unit_test(the_fluid_balances_what_acts_on_a_clump),
   };
   return cmocka_run_group_tests(tests, NULL, free_shells);

@@ -2,7 +2,8 @@
 #include "check.h"
 
 #include "sd_box_flow.h"
-#include "sd_flow.h"
+#include "sd_flow_points.h"
+#include "sd_linear.h"
 
 #include <math.h>
 #include <string.h>
@@ -117,6 +118,49 @@ static void a_bent_flow_carries_a_sphere_with_its_mean(void **state)
   for (int d = 0; d < 3; d++) CHECK_NEAR(out[d], mean[d], 1e-14);
 }
 
+/* Of one quadratic flow it does not matter which sphere tells of it: points move as the flow carries them where they
+ * are, of shells of any size. */
+static void points_go_with_a_quadratic_flow(void **state)
+{
+  (void) state;
+  static const double H[SD_FLOW_SECOND] = {0.9,  -0.4, 1.7, 0.6, -1.5, 0.35, 0.2, 0.8, -0.3,
+                                           -0.7, 1.2,  0.1, 1.4, -0.6, 0.5,  0.3, 0.9, -1.1};
+  static sd_multiblob model[2];
+  const double X[6] = {0.3, -1.1, 0.7, 2.0, 1.4, -0.6}, a[2] = {1.2, 0.5}, w[2] = {1.0, 1.0};
+  const int kind[2] = {1, 0}, first[3] = {0, 42, 54};
+  double r[3 * 54], x[3 * 54], b[54], u[3 * 54], velocity[8], gradient[18], second[2 * SD_FLOW_SECOND];
+  assert_int_equal(sd_multiblob_create(12, 1, &model[0]), SD_OK);
+  assert_int_equal(sd_multiblob_create(42, 1, &model[1]), SD_OK);
+  const sd_multiblob_spheres spheres = {X, a, NULL, NULL, 2, kind, first};
+  sd_multiblob_expand(model, &spheres, r, x, b);
+  for (int i = 0; i < 2; i++) {
+    const double *c = X + 3 * i;
+    memset(velocity + 4 * i, 0, 3 * sizeof(double));
+    sd_flow_bend(H, c, 0.0, velocity + 4 * i);
+    for (int p = 0; p < 3; p++) { /* xx yy zz xy xz yz */
+      const double *K = H + 6 * p;
+      gradient[9 * i + 3 * p] = K[0] * c[0] + K[3] * c[1] + K[4] * c[2];
+      gradient[9 * i + 3 * p + 1] = K[3] * c[0] + K[1] * c[1] + K[5] * c[2];
+      gradient[9 * i + 3 * p + 2] = K[4] * c[0] + K[5] * c[1] + K[2] * c[2];
+    }
+    memcpy(second + SD_FLOW_SECOND * i, H, sizeof(H));
+  }
+  const sd_multiblob_additions points = {model, spheres, w, r};
+  const sd_flow_spheres bent = {velocity, 4, gradient, second}, straight = {velocity, 4, gradient, NULL};
+  sd_flow_at_points(&points, &bent, u);
+  for (int k = 0; k < 54; k++) {
+    double there[3] = {0.0};
+    sd_flow_bend(H, x + 3 * k, b[k], there);
+    for (int d = 0; d < 3; d++) CHECK_NEAR(u[3 * k + d], there[d], 1e-13);
+  }
+  sd_flow_at_points(&points, &straight, u);
+  for (int k = 0; k < 54; k++)
+    for (int d = 0; d < 3; d++) {
+      const double *G = gradient + 9 * (k >= 42) + 3 * d, *from = r + 3 * k;
+      CHECK_NEAR(u[3 * k + d], velocity[4 * (k >= 42) + d] + sd_dot(G, from), 1e-14);
+    }
+}
+
 /* A box of skew edges, and one that grows, shears and drifts */
 static const sd_box BOX = {{-1.5, 0.4, 2.2}, {3.1, 2.3, 4.7, 0.9, -1.3, 0.6}};
 static const sd_box_flow DRIFT = {{0.2, -0.7, 0.3, 0.0, -0.1, 0.5, 0.0, 0.0, 0.4}, {-1.5, 0.4, 2.2}, {1.1, -0.2, 0.7}};
@@ -180,6 +224,7 @@ int main(void)
       cmocka_unit_test(flow_of_a_cell_moves_its_edges),
       cmocka_unit_test(second_differences_of_a_cubic_flow_are_exact),
       cmocka_unit_test(a_bent_flow_carries_a_sphere_with_its_mean),
+      cmocka_unit_test(points_go_with_a_quadratic_flow),
       cmocka_unit_test(a_later_box_has_its_points_where_the_flow_takes_them),
       cmocka_unit_test(steps_in_a_box_are_the_same_for_all_images),
   };

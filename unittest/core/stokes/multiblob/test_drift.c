@@ -58,7 +58,7 @@ static void add_moments(const blob_flock *f, const double *l, const double *held
   for (long k = 0, own = f->s->m.n; k < f->s->n; k++) {
     double S[6] = {0.0};
     sd_multiblob_moment(own, f->s->r + 3 * own * k, l + 3 * own * k, S);
-    sd_multiblob_moment(1, f->arm + 3 * k, held_by + 6 * k, S);
+    sd_multiblob_moments_at(1, f->arm + 3 * k, held_by + 3 * k, S);
     for (int e = 0; e < 6; e++) D[e] += part * S[e];
   }
 }
@@ -70,7 +70,7 @@ enum { ANSWER = 6 * 4 + 6 };
 static void solve_at(const place_of *points, const place_of *films, const double *u, const double *loads,
                      const double *random, double *answer)
 {
-  double F[6 * MOST], held_by[6 * MOST], S[6 * MOST] = {0.0}, *D = answer + 6 * points->n;
+  double F[6 * MOST], held_by[3 * MOST], S[6 * MOST] = {0.0}, *D = answer + 6 * points->n;
   scene_at p = build(points, 0), l = build(films, films->films);
   if (films->films) {
     p.f->tie.L = &l.f->s->L;
@@ -82,7 +82,7 @@ static void solve_at(const place_of *points, const place_of *films, const double
   for (int j = 0; j < loads_of_all; j++) F[j] = loads[j] + random[j];
   assert_int_equal(move(p.f, &p.A, F, 0, 1e-10), SD_OK);
   memcpy(answer, p.f->V, sizeof(double) * 6 * (size_t) points->n);
-  for (int j = 0; j < loads_of_all; j++) held_by[j] = p.f->exerted[j] - loads[j];
+  sd_bodies_bonds(&p.A, p.f->exerted, F, random, held_by);
   memset(D, 0, 6 * sizeof(double));
   add_moments(p.f, p.f->l, held_by, 1.0, D);
   if (films->films) assert_int_equal(sd_lubrication_stress(&l.f->s->L, p.f->v, S), SD_OK);
@@ -179,8 +179,8 @@ static void add_by_differences(const place_of *s, const scene_at *at, const sd_d
       double *work = malloc(sizeof(double) * (size_t) (18 * s->n + 6 * at->A.spheres.n + 2 * rows));
       assert_int_equal(sd_drifter_difference(&here.A, l, sign / (2.0 * STEP), work, slip, load), SD_OK);
       free(work);
-      double on_spheres[6 * MOST] = {0.0};
-      for (int i = 0; i < rows; i++) on_spheres[6 * here.f->sphere[i / 3] + i % 3] += l[i];
+      double on_spheres[3 * MOST] = {0.0};
+      for (int i = 0; i < rows; i++) on_spheres[3 * here.f->sphere[i / 3] + i % 3] += l[i];
       add_moments(here.f, l, on_spheres, sign / (2.0 * STEP), mean + 6 * s->n);
       blob_flock_free(here.f);
     }

@@ -317,7 +317,7 @@ static void every_mode_is_right_at_the_default_tolerance(void **state)
     for (int sharp = 0; sharp < 2; sharp++) {
       const double tolerance = sharp ? 1e-7 : 0.01 / 3.0;
       assert_int_equal(sd_bodies_draw(&noise, &s.near, &blocks, w, tolerance, f->u, &report), SD_OK);
-      for (int j = 0; j < rows; j++) f->u[j] += waves[j];
+      sd_noise_join(rows, 1.0, waves, f->u);
       assert_int_equal(move(f, &s.whole, F, 0, tolerance), SD_OK);
       for (int p = 0; p < size; p++) { /* R^1/2 V has the covariance 1 */
         V[sharp][p] = 0.0;

@@ -110,25 +110,27 @@ static void rows_by_offset(void **state)
   }
 }
 
-/* Moments about a centre that is d further on lack those of what the points of a sphere exert together, at d: of
- * spheres of any number of points, one of which has none. */
+/* Moments about a centre that is an arm further on lack those of what the points of a sphere exert together, at that
+ * arm: of spheres of any number of points, one of which has none. */
 static void moments_go_with_forces(void **state)
 {
   (void) state;
   enum { SPHERES = 4, ROWS = 17 };
   static const int first[SPHERES + 1] = {0, 5, 5, 6, ROWS};
   const double d[3] = {0.7, -1.3, 2.1};
-  double r[3 * ROWS], from[3 * ROWS], f[3 * ROWS], F[3 * SPHERES] = {0}, S[6 * SPHERES] = {0}, moved[6 * SPHERES] = {0};
+  double arm[3 * SPHERES], r[3 * ROWS], from[3 * ROWS], f[3 * ROWS];
+  double F[3 * SPHERES] = {0}, S[6 * SPHERES] = {0}, moved[6 * SPHERES] = {0};
   uint64_t seed = 8;
   for (int j = 0; j < 3 * ROWS; j++) {
     r[j] = uniform(&seed, -1, 1);
     f[j] = uniform(&seed, -1, 1);
-    from[j] = r[j] - d[j % 3];
+    from[j] = r[j] - (j < 3 * first[1] ? 1.0 : -0.4) * d[j % 3];
   }
+  for (int j = 0; j < 3 * SPHERES; j++) arm[j] = (j < 3 ? 1.0 : -0.4) * d[j % 3];
   sd_multiblob_forces(SPHERES, first, f, F);
   sd_multiblob_moments(SPHERES, first, r, f, S);
   sd_multiblob_moments(SPHERES, first, from, f, moved);
-  for (int i = 0; i < SPHERES; i++) sd_multiblob_moment(1, d, F + 3 * i, moved + 6 * i);
+  sd_multiblob_moments_at(SPHERES, arm, F, moved);
   for (int e = 0; e < 6 * SPHERES; e++) CHECK_NEAR(moved[e], S[e], 1e-13);
   for (int e = 6; e < 12; e++) CHECK_NEAR(S[e], 0.0, 0.0);
 }
