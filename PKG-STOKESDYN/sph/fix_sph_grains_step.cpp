@@ -67,10 +67,7 @@ void FixSphGrains::weigh()
     M[j] = atom->mask[around.grains[j]] & free_bits & ~held_bits ? atom->rmass[around.grains[j]] : HUGE_VAL;
   }
   volume.resize(m + 1);
-  for (size_t p = 0; p < m; p++) {
-    const int i = around.points[p];
-    volume[p] = atom->rmass[i] / (atom->rho[i] * (1.0 - phi[i]));
-  }
+  sd_sph_grain_volumes((int) m, around.points.data(), atom->rmass, atom->rho, phi.data(), volume.data());
   wet.resize(n + 1);
   own.resize(n + 1);
   const sd_sph_around list = around.list();
@@ -83,23 +80,36 @@ void FixSphGrains::weigh()
 /* The volume of the particles stays, and so all that has been found with it. */
 void FixSphGrains::displace()
 {
-  for (const int i : around.points)
-    if (fills && filled == 0.0) atom->rmass[i] *= 1.0 - phi[i];
+  if (fills && filled == 0.0)
+    sd_sph_grain_displace((int) around.points.size(), around.points.data(), phi.data(), atom->rmass);
   filled = 1.0;
+}
+
+std::vector<double> FixSphGrains::rows_of_grains(double **vectors) const
+{
+  std::vector<double> rows(3 * around.grains.size() + 1);
+  for (size_t j = 0; j < around.grains.size(); j++) std::copy_n(vectors[around.grains[j]], 3, &rows[3 * j]);
+  return rows;
+}
+
+std::vector<double> FixSphGrains::rows_of_atoms(double **vectors, size_t n) const
+{
+  std::vector<double> rows(3 * (size_t) (atom->nlocal + atom->nghost) + 1, 0.0);
+  for (size_t i = 0; i < n; i++) std::copy_n(vectors[i], 3, &rows[3 * i]);
+  return rows;
 }
 
 const double *FixSphGrains::mixture(const double *v)
 {
-  std::vector<double> velocities(3 * around.grains.size() + 1), there(3 * around.points.size() + 1, 0.0);
-  for (size_t j = 0; j < around.grains.size(); j++) std::copy_n(atom->v[around.grains[j]], 3, &velocities[3 * j]);
+  const std::vector<double> velocities = rows_of_grains(atom->v);
+  std::vector<double> there(3 * around.points.size() + 1, 0.0);
   const sd_sph_around list = around.list();
   const sd_sph_grains of_grains = are_grains();
   sd_sph_grain_flux(&list, &of_grains, volume.data(), velocities.data(), there.data());
   moved = around.at_atoms(there, 3);
   reverse(moved.data(), 3);
   forward(moved.data(), 3);
-  for (int i = 0; i < atom->nlocal + atom->nghost; i++)
-    for (size_t k = 3 * (size_t) i; k < 3 * (size_t) i + 3; k++) moved[k] += (1.0 - phi[i]) * v[k];
+  sd_sph_grain_water_flux(atom->nlocal + atom->nghost, phi.data(), v, moved.data());
   return moved.data();
 }
 
@@ -195,44 +205,28 @@ void FixSphGrains::stresses(std::vector<double> &F)
     }
   }
   forward(forces.data(), 3);
-  std::vector<double> per_volume = around.at_points(forces, 3), mean(3 * around.grains.size() + 1);
-  for (size_t k = 0; k < 3 * around.points.size(); k++) per_volume[k] /= volume[k / 3];
+  std::vector<double> on_water = around.at_points(forces, 3);
   const sd_sph_around list = around.list();
   const sd_sph_grains of_grains = are_grains();
-  sd_sph_grain_vector_means(&list, per_volume.data(), mean.data());
-  sd_sph_grain_stresses((int) around.grains.size(), &of_grains, mean.data(), F.data());
+  sd_sph_grain_stresses(&list, &of_grains, (int) around.points.size(), volume.data(), on_water.data(), F.data());
 }
 
 /* Of the water at the places of grains, and of these */
 FixSphGrains::Slip FixSphGrains::slip_of_now()
 {
-  Slip slip;
-  const size_t all = atom->nlocal + atom->nghost;
-  std::vector<double> water(3 * all + 1, 0.0);
-  for (size_t i = 0; i < all; i++) std::copy_n(atom->v[i], 3, &water[3 * i]);
-  slip.water = around.mean_of(water, 3);
-  slip.grains.resize(3 * around.grains.size() + 1);
-  for (size_t j = 0; j < around.grains.size(); j++) std::copy_n(atom->v[around.grains[j]], 3, &slip.grains[3 * j]);
-  return slip;
+  return {around.mean_of(rows_of_atoms(atom->v, atom->nlocal + atom->nghost), 3), rows_of_grains(atom->v)};
 }
 
 /* That at the end of the step, which all forces but drag make: those of atoms, and the stresses F of grains */
 FixSphGrains::Slip FixSphGrains::slip_without_drag(const std::vector<double> &F)
 {
-  Slip slip;
   const double dt = update->dt;    // at a setup as well: that force begins the first step
-  std::vector<double> water(3 * (size_t) (atom->nlocal + atom->nghost) + 1, 0.0);
-  for (int i = 0; i < atom->nlocal; i++)
-    if (pair->is_particle(i))
-      for (int d = 0; d < 3; d++)
-        water[3 * (size_t) i + d] = atom->v[i][d] + dt * atom->f[i][d] / atom->rmass[i];
+  const std::vector<double> on_water = rows_of_atoms(atom->f, atom->nlocal), on_grains = rows_of_grains(atom->f);
+  std::vector<double> water = rows_of_atoms(atom->v, atom->nlocal);
+  sd_sph_grain_push(atom->nlocal, dt, on_water.data(), nullptr, atom->rmass, water.data());
   forward(water.data(), 3);
-  slip.water = around.mean_of(water, 3);
-  slip.grains.resize(3 * around.grains.size() + 1);
-  for (size_t j = 0; j < around.grains.size(); j++)
-    for (int d = 0; d < 3; d++)
-      slip.grains[3 * j + d] =
-          atom->v[around.grains[j]][d] + dt * (atom->f[around.grains[j]][d] + F[3 * j + d]) / M[j];
+  Slip slip = {around.mean_of(water, 3), rows_of_grains(atom->v)};
+  sd_sph_grain_push((int) around.grains.size(), dt, on_grains.data(), F.data(), M.data(), slip.grains.data());
   return slip;
 }
 

@@ -38,25 +38,6 @@ bool ClumpOverlaps::are_new(int bits)
   return now != before;
 }
 
-/* Of the members [n] of a clump, by tag. Seen from each the others stand at their nearest image: what overlaps it
- * is near. */
-void ClumpOverlaps::add_lost(const Voice &voice, const Domain *domain, const Member *clump, size_t n,
-                             std::map<tagint, double> &lost)
-{
-  std::vector<double> x(3 * n), a(n);
-  for (size_t k = 0; k < n; k++) {
-    for (size_t j = 0; j < n; j++) {
-      for (int d = 0; d < 3; d++) x[3 * j + d] = clump[j].x[d] - clump[k].x[d];
-      sd_closest_image(domain->h, domain->periodicity, &x[3 * j]);
-      a[j] = clump[j].a;
-    }
-    const double share = sd_vans_union_share((int) n, x.data(), a.data(), (int) k);
-    if (share < 0.0)
-      voice.fail_one("keyword overlap: out of memory for a clump of " + std::to_string(n) + " members");
-    lost[clump[k].tag] = 1.0 - share;
-  }
-}
-
 std::vector<ClumpOverlaps::Member> ClumpOverlaps::members(int bits, bool unwrapped) const
 {
   std::vector<Member> mine;
@@ -73,35 +54,51 @@ std::vector<ClumpOverlaps::Member> ClumpOverlaps::members(int bits, bool unwrapp
   return all;
 }
 
-/* Along x only those are compared that are within two of the largest radii. */
+/* The members of each molecule, which stand one after the other */
+template <class Look> void ClumpOverlaps::each_clump(const std::vector<Member> &all, const Look &look)
+{
+  for (size_t begin = 0, end; begin < all.size(); begin = end) {
+    for (end = begin; end < all.size() && all[end].molecule == all[begin].molecule; end++) {}
+    look(std::vector<Member>(all.begin() + begin, all.begin() + end));
+  }
+}
+
 tagint ClumpOverlaps::first(int bits) const
 {
   constexpr double DEEP = 0.9;    // at 0.9 (a + b) two equal spheres share 0.7 % of their volume
-  std::vector<Member> all = members(bits, true);
-  double widest = 0.0;
-  for (const Member &m : all) widest = std::max(widest, 2.0 * m.a);
-  std::sort(all.begin(), all.end(), [](const Member &p, const Member &q) {
-    return p.molecule != q.molecule ? p.molecule < q.molecule : p.x[0] < q.x[0];
-  });
-  for (size_t i = 0; i < all.size(); i++)
-    for (size_t j = i + 1; j < all.size() && all[j].molecule == all[i].molecule; j++) {
-      if (all[j].x[0] - all[i].x[0] > widest) break;
-      const double reach = DEEP * (all[i].a + all[j].a);
-      double r2 = 0.0;
-      for (int d = 0; d < 3; d++) r2 += (all[j].x[d] - all[i].x[d]) * (all[j].x[d] - all[i].x[d]);
-      if (r2 < reach * reach) return all[i].molecule;
+  tagint found = 0;
+  each_clump(members(bits, true), [&](std::vector<Member> clump) {
+    std::vector<double> x, a;
+    if (found != 0) return;
+    std::sort(clump.begin(), clump.end(), [](const Member &p, const Member &q) { return p.x[0] < q.x[0]; });
+    for (const Member &m : clump) {
+      x.insert(x.end(), m.x, m.x + 3);
+      a.push_back(m.a);
     }
-  return 0;
+    if (sd_vans_any_nearer((int) clump.size(), x.data(), a.data(), DEEP)) found = clump[0].molecule;
+  });
+  return found;
 }
 
+/* Seen from each member the others stand at their nearest image: what overlaps it is near. */
 std::map<tagint, double> ClumpOverlaps::lost(int bits) const
 {
-  const std::vector<Member> all = members(bits, false);
   std::map<tagint, double> lost;
-  for (size_t begin = 0, end; begin < all.size(); begin = end) {
-    for (end = begin; end < all.size() && all[end].molecule == all[begin].molecule; end++) {}
-    add_lost(voice, domain, &all[begin], end - begin, lost);
-  }
+  each_clump(members(bits, false), [&](const std::vector<Member> &clump) {
+    const size_t n = clump.size();
+    std::vector<double> x(3 * n), a(n);
+    for (size_t k = 0; k < n; k++) {
+      for (size_t j = 0; j < n; j++) {
+        for (int d = 0; d < 3; d++) x[3 * j + d] = clump[j].x[d] - clump[k].x[d];
+        sd_closest_image(domain->h, domain->periodicity, &x[3 * j]);
+        a[j] = clump[j].a;
+      }
+      const double share = sd_vans_union_share((int) n, x.data(), a.data(), (int) k);
+      if (share < 0.0)
+        voice.fail_one("keyword overlap: out of memory for a clump of " + std::to_string(n) + " members");
+      lost[clump[k].tag] = 1.0 - share;
+    }
+  });
   return lost;
 }
 

@@ -11,10 +11,6 @@
 #include <map>
 #include <vector>
 
-namespace LAMMPS_NS {
-class Domain;
-}
-
 namespace StokesDyn {
 
 class ClumpOverlaps : protected LAMMPS_NS::Pointers {
@@ -41,8 +37,7 @@ class ClumpOverlaps : protected LAMMPS_NS::Pointers {
   };
   /* Of all ranks, by molecules; the places are in the box, or unwrapped */
   std::vector<Member> members(int bits, bool unwrapped) const;
-  static void add_lost(const Voice &voice, const LAMMPS_NS::Domain *domain, const Member *clump, size_t n,
-                       std::map<LAMMPS_NS::tagint, double> &lost);
+  template <class Look> static void each_clump(const std::vector<Member> &all, const Look &look);
 };
 
 }    // namespace StokesDyn

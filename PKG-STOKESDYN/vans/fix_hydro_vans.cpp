@@ -28,7 +28,7 @@ FixHydroVans::Columns::Columns(const VansSettings &set, const Resume &resume)
   if (set.conserve) add(account, sizeof(sd_vans_account));
   if (set.overlap_once) add(lost, sizeof(double));
   if (set.fluctuates()) add(eddy, VansFluctuations::carried(set) * sizeof(double));
-  if (set.law.added_mass > 0.0) add(motion, sizeof(Motion));
+  if (set.law.added_mass > 0.0) add(motion, sizeof(sd_vans_motion));
 }
 
 FixHydroVans::FixHydroVans(LAMMPS *lmp, int narg, char **arg) :
@@ -205,11 +205,9 @@ void FixHydroVans::setup(int vflag)
 
 void FixHydroVans::post_force(int /*vflag*/)
 {
-  const bool stepping = update->ntimestep != last_step && last_step >= 0 &&
-      update->whichflag == 1 && update->ntimestep > update->firststep;
-  // A run that begins where another ended: the force of that step stands.
-  const bool repeat = update->ntimestep == last_step;
-  if (stepping) elapsed += update->dt;
+  const bool after = last_step >= 0 && update->whichflag == 1 && update->ntimestep > update->firststep;
+  const Moment moment = update->ntimestep == last_step ? AGAIN : after ? STEP : ANEW;
+  if (moment == STEP) elapsed += update->dt;
   last_step = update->ntimestep;
   summed_step = -1;
   const Sums before = local;
@@ -217,15 +215,15 @@ void FixHydroVans::post_force(int /*vflag*/)
   if (!set.has_grains()) return;
   look_at_gravity();
   select(groupbit);
-  if (set.law.added_mass > 0.0) find_accelerations(stepping, repeat);
+  if (set.law.added_mass > 0.0) find_accelerations(moment);
   local.outside = forces(grains(), true);
-  for (int i = 0; i < atom->nlocal; i++) push(i, stepping, repeat);
-  press(stepping, repeat, before);
+  for (int i = 0; i < atom->nlocal; i++) push(i, moment);
+  press(moment, before);
   check_forces();
 }
 
 /* Adds the force to atom i and to the sums, and books it. */
-void FixHydroVans::push(int i, bool stepping, bool repeat)
+void FixHydroVans::push(int i, Moment moment)
 {
   if (!take[i]) {
     if (out.has(i)) std::fill_n(out.writable(i) + FORCE, 3, 0.0);
@@ -241,13 +239,13 @@ void FixHydroVans::push(int i, bool stepping, bool repeat)
     Fi[0] += books->shear;
     drag += books->shear;
   }
-  if (repeat && row[Columns::SOLVED] != 0.0 && resume.placed(i, left) && resume.moving(i, left)) {
+  if (moment == AGAIN && row[Columns::SOLVED] != 0.0 && resume.placed(i, left) && resume.moving(i, left)) {
     std::copy_n(out[i] + FORCE, 3, Fi);
     if (books) drag = books->force;
   }
   row[Columns::SOLVED] = 1.0;
   if (books) {
-    if (stepping) sd_vans_account_step(books, drag, update->dt);
+    if (moment == STEP) sd_vans_account_step(books, drag, update->dt);
     books->force = drag;
   }
   std::copy_n(Fi, 3, out.writable(i) + FORCE);
@@ -269,21 +267,16 @@ void FixHydroVans::check_forces() const
                            "velocity of the water there, is not finite");
 }
 
-/* What a velocity of half a step ago became. A run begins with that of its step, half a step before
- * the next that is seen here. */
-void FixHydroVans::find_accelerations(bool stepping, bool repeat)
+void FixHydroVans::find_accelerations(Moment moment)
 {
   acceleration.assign(3 * (size_t) atom->nlocal + 3, 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!take[i]) continue;
-    Motion *motion = (Motion *) (memo.writable(i) + column.motion);
-    if (stepping && motion->span > 0.0)
-      for (int d = 0; d < 3; d++)
-        acceleration[3 * (size_t) i + d] =
-            (atom->v[i][d] - motion->v[d]) / (motion->span * update->dt);
-    if (repeat && motion->span > 0.0) continue;
-    std::copy_n(atom->v[i], 3, motion->v);
-    motion->span = stepping ? 1.0 : 0.5;
+    sd_vans_motion *motion = (sd_vans_motion *) (memo.writable(i) + column.motion);
+    if (moment == STEP)
+      sd_vans_motion_step(motion, atom->v[i], update->dt, &acceleration[3 * (size_t) i]);
+    else if (moment == ANEW || motion->span == 0.0)
+      sd_vans_motion_begin(motion, atom->v[i]);
   }
 }
 
@@ -307,7 +300,7 @@ std::vector<FixHydroVans::Given> FixHydroVans::givens()
 {
   return {{set.dpdx, stream.fluid.dpdx, -HUGE_VAL, "pressure_gradient", ""},
           {set.u_top, stream.fluid.u_top, -HUGE_VAL, "surface", "speed "},
-          {set.intensity, stream.intensity, 0.0, "intensity", ""},
+          {set.fluctuations.intensity, fluctuations.intensity, 0.0, "intensity", ""},
           {set.flux, stream.flux, -HUGE_VAL, "upflow", ""},
           {set.discharge, stream.fluid.discharge, -HUGE_VAL, "discharge", ""},
           {set.gravity[0], set.law.g[0], -HUGE_VAL, "gravity", "gx "},

@@ -63,11 +63,6 @@ class FixHydroVans : public RowsFix {
     Columns(const VansSettings &set, const Resume &resume);
   } column;
   AtomRows memo;
-  /* For the added mass: the velocity of the last step, and how much of a step lies between it and
-   * that of the next; 0: nothing is known. */
-  struct Motion {
-    double v[3], span;
-  };
   sd_vans_account *account(int i) { return (sd_vans_account *) (memo.writable(i) + column.account); }
 
   /* The same on all ranks and in the restart file; last_step: of the forces in array_atom; elapsed:
@@ -123,7 +118,10 @@ class FixHydroVans : public RowsFix {
   void select(int bit, bool not_in_group = false);
   sd_vans_grains grains();
   int forces(const sd_vans_grains &all, bool accelerated = false);
-  void push(int i, bool stepping, bool repeat);
+  /* What a call of post_force is: a step after the last one, the step once more with which a run begins where
+   * another ended and whose force stands, or neither */
+  enum Moment { ANEW, STEP, AGAIN };
+  void push(int i, Moment moment);
   void check_forces() const;
   void sum_up();
   void tell_outside();
@@ -133,8 +131,8 @@ class FixHydroVans : public RowsFix {
   void read_variables();
   void take_variables(const std::vector<double> &last);
   void feel_pressure();
-  void press(bool stepping, bool repeat, const Sums &before);
-  void find_accelerations(bool stepping, bool repeat);
+  void press(Moment moment, const Sums &before);
+  void find_accelerations(Moment moment);
   void average();
   void couple(double T, double dt);
   void end_interval();

@@ -150,8 +150,9 @@ VansStream::Given FixHydroVans::impulses(double ratio)
     forces(some);
     for (int i = 0; i < n; i++) {
       if (!take[i]) continue;
-      rest[i] = account(i)->foreseen - ratio * elapsed * drag_x[i];
-      mine[N + 1] += elapsed * (drag_x[i] + account(i)->shear);
+      double impulse;
+      rest[i] = sd_vans_account_held(account(i), drag_x[i], elapsed, ratio, &impulse);
+      mine[N + 1] += impulse;
     }
     sd_vans_spread(&set.mesh, set.point, &some, rest.data(), mine.data());
   }
@@ -178,17 +179,16 @@ void FixHydroVans::feel_pressure()
   set.law.dpdx = stream.felt;
 }
 
-/* Books what the pressure gradient gives to the grains. A run that begins where another ended has
- * the force of that step. */
-void FixHydroVans::press(bool stepping, bool repeat, const Sums &before)
+/* Books what the pressure gradient gives to the grains. */
+void FixHydroVans::press(Moment moment, const Sums &before)
 {
   if (set.law.dpdx != 0.0) {
     const sd_vans_grains all = grains();
     local.pressure -= sd_vans_volume_of_grains(&all) * set.law.dpdx;
   }
-  if (repeat) local.pressure = before.pressure;
+  if (moment == AGAIN) local.pressure = before.pressure;
   local.pressed = before.pressed;
-  if (stepping) local.pressed += 0.5 * update->dt * (before.pressure + local.pressure);
+  if (moment == STEP) local.pressed += 0.5 * update->dt * (before.pressure + local.pressure);
 }
 
 /* The next interval begins. */

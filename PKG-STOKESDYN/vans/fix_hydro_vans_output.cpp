@@ -31,7 +31,7 @@ double FixHydroVans::compute_vector(int k)
                    scale = (mean.density - set.fluid.rho) * size * 2.0 * mean.radius;
       return scale > 0.0 ? largest / scale : 0.0;
     }
-    case BED: return stream.bed_elevation();
+    case BED: return fluctuations.bed_elevation();
     case MOMENTUM:
       return area() *
           sd_vans_momentum(&stream.wet, set.fluid.rho, stream.phi(), stream.U.data());
@@ -176,7 +176,7 @@ int FixHydroVans::modify_param(int narg, char **arg)
 static std::vector<double> layout(const VansSettings &set)
 {
   std::vector<double> columns = {(double) set.conserve, (double) set.overlap_once,
-                                 set.fluctuation == VansSettings::LANGEVIN
+                                 set.fluctuations.kind == VansSettings::Fluctuations::LANGEVIN
                                      ? 2.0
                                      : (double) set.fluctuates()};
   if (set.law.added_mass > 0.0) columns.push_back(1.0);

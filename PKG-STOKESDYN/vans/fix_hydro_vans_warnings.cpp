@@ -20,7 +20,7 @@ using namespace StokesDyn;
 void FixHydroVans::look_at_neighbours()
 {
   const unsigned facts =
-      (set.fluctuation == VansSettings::LANGEVIN ? LANGEVIN : 0u) | (set.has_grains() ? DRAGS : 0u);
+      (set.fluctuations.kind == VansSettings::Fluctuations::LANGEVIN ? LANGEVIN : 0u) | (set.has_grains() ? DRAGS : 0u);
   neighbourhood.look(set.voice, vans_neighbours(), facts,
                      [this](int i) { return (unsigned) ((atom->mask[i] & groupbit) != 0); }, this);
 }

@@ -11,7 +11,14 @@ namespace StokesDyn {
 
 class VansFluctuations {
  public:
-  explicit VansFluctuations(const VansStream &stream) : stream(stream), set(stream.set) {}
+  explicit VansFluctuations(const VansStream &stream) :
+      intensity(stream.set.fluctuations.intensity.number()), stream(stream), mesh(stream.mesh),
+      set(stream.set.fluctuations)
+  {
+  }
+
+  /* the friction velocity, if the user gives one number */
+  double intensity;
 
   /* The numbers that a grain carries for it */
   static size_t carried(const VansSettings &set);
@@ -22,6 +29,9 @@ class VansFluctuations {
    * grains are without */
   Renew after(double time, double step, bool first);
 
+  /* found, or as the user says */
+  double bed_elevation() const { return set.find_bed ? stream.bed_elevation() : set.bed; }
+
   /* The random walk of all grains at once, as restart files have it; renewals 0: it has not begun */
   struct {
     double age = 0.0, period = 0.0, renewals = 0.0;
@@ -29,7 +39,12 @@ class VansFluctuations {
 
  private:
   const VansStream &stream;
-  const VansSettings &set;
+  const sd_vans_mesh &mesh;
+  const VansSettings::Fluctuations &set;
+  /* [N] with the sign of the stress */
+  std::vector<double> friction_velocities() const;
+  /* [N] of the Langevin walk */
+  std::vector<double> lagrangian_times(const std::vector<double> &u_star) const;
   Renew eddies_after(double time, double step, bool first);
   Renew walk_after(double time, bool first) const;
 };

@@ -81,23 +81,23 @@ void VansSettings::take_class_radii(Keywords &in)
 
 void VansSettings::take_fluctuation(Keywords &in)
 {
-  fluctuation = in.option<decltype(fluctuation)>(
+  fluctuations.kind = in.option<Fluctuations::Kind>(
       {"none", "correlated", "uncorrelated", "depth", "langevin"});
   if (!fluctuates()) return;
-  seed = (uint64_t) in.value("seed").integer(1, std::numeric_limits<bigint>::max());
-  find_bed = in.take("auto");
-  if (!find_bed) bed = in.value("bed").number();
+  fluctuations.seed = (uint64_t) in.value("seed").integer(1, std::numeric_limits<bigint>::max());
+  fluctuations.find_bed = in.take("auto");
+  if (!fluctuations.find_bed) fluctuations.bed = in.value("bed").number();
 }
 
 void VansSettings::take_intensity(Keywords &in)
 {
   if (in.take("stress")) return;
-  intensity_given = true;
+  fluctuations.intensity_given = true;
   if (in.more() && in.peek() == "file")
     intensity_file = file_name(in);
   else
-    intensity = one_for_all(in);
-  if (intensity.number() < 0.0) in.refuse("'" + text(intensity.number()) + "' must be >= 0");
+    fluctuations.intensity = one_for_all(in);
+  if (fluctuations.intensity.number() < 0.0) in.refuse("'" + text(fluctuations.intensity.number()) + "' must be >= 0");
 }
 
 void VansSettings::take_fluid(Keywords &in)
@@ -191,8 +191,8 @@ void VansSettings::read(Keywords &in)
       {"felt", [&] { law.felt_by_volume = in.choice({"centre", "volume"}) == 1; }},
       {"fluctuation", [&] { take_fluctuation(in); }},
       {"intensity", [&] { take_intensity(in); }},
-      {"renewal", [&] { renewal = in.positive(); }},
-      {"schmidt", [&] { schmidt = in.positive(); }},
+      {"renewal", [&] { fluctuations.renewal = in.positive(); }},
+      {"schmidt", [&] { fluctuations.schmidt = in.positive(); }},
       {"rules", [&] { fluid.rules = law.rules = in.option<sd_vans_rules>({"consistent", "yade"}); }},
       {"conserve", [&] { conserve = in.yes_no(); }},
       {"overlap",
@@ -212,7 +212,8 @@ void VansSettings::check_yade(const Keywords &in) const
   in.require(mesh_file.empty(), "keyword mesh: rules yade needs slices of equal height, mesh ncell dz zref");
   in.require(!law.felt_by_volume,
              "keyword felt is not available with rules yade: grains feel the water at their centre");
-  in.require(fluctuation != LANGEVIN, "keyword fluctuation: langevin is not available with rules yade");
+  in.require(fluctuations.kind != Fluctuations::LANGEVIN,
+             "keyword fluctuation: langevin is not available with rules yade");
   in.require(law.drag.fall == 0.0, "keyword fall_diameter is not available with rules yade");
   in.require(law.drag.law == SD_DRAG_YADE && law.drag.hindrance == SD_HINDRANCE_POWER,
              "keyword drag: with rules yade only drag yade and hindrance n are available");
@@ -232,12 +233,13 @@ void VansSettings::check(const Keywords &in) const
   check_yade(in);
   in.require(!law.felt_by_volume || !point, "keyword felt has no effect with grains point");
   in.require(!in.given("renewal") || fluctuates(), "keyword renewal requires fluctuations");
-  in.require(!in.given("renewal") || fluctuation != DEPTH,
+  in.require(!in.given("renewal") || fluctuations.kind != Fluctuations::DEPTH,
              "keyword renewal has no effect with fluctuation depth: each grain has a time of its own");
   in.require(!in.given("intensity") || fluctuates(), "keyword intensity requires fluctuations");
   in.require(!fluctuates() || has_grains(),
              "keyword fluctuation: with couple fluid there are no grains that could feel it");
-  in.require(!in.given("schmidt") || fluctuation == LANGEVIN, "keyword schmidt requires fluctuation langevin");
+  in.require(!in.given("schmidt") || fluctuations.kind == Fluctuations::LANGEVIN,
+             "keyword schmidt requires fluctuation langevin");
   in.require(!in.given("hindrance") || !sd_drag_of_bed(law.drag.law),
              "keyword hindrance: ergun, gidaspow, beetstra and koch_hill have the neighbours of a grain in them: "
              "leave hindrance out");
@@ -283,10 +285,10 @@ void VansSettings::read_files()
   law.convective = convective.empty() ? nullptr : convective.data();
   if (intensity_file.empty()) return;
   const Voice what = voice.of("keyword intensity");
-  intensities = read_list(what, intensity_file, N, "ncell");
+  fluctuations.intensities = read_list(what, intensity_file, N, "ncell");
   for (int n = 0; n < N; n++)
-    if (intensities[n] < 0.0)
-      what.fail("file '" + intensity_file + "': '" + text(intensities[n]) + "' in row " +
+    if (fluctuations.intensities[n] < 0.0)
+      what.fail("file '" + intensity_file + "': '" + text(fluctuations.intensities[n]) + "' in row " +
                 std::to_string(n + 1) + " must be >= 0");
 }
 

@@ -56,19 +56,22 @@ struct VansSettings {
   /* empty: those of the grains */
   std::vector<double> class_radii;
   bool point = false;
-  enum { NO_FLUCTUATION, CORRELATED, UNCORRELATED, DEPTH, LANGEVIN } fluctuation = NO_FLUCTUATION;
-  uint64_t seed = 0;
-  double bed = 0.0;
-  bool find_bed = false;
-  /* 0: depth over mean velocity above the bed */
-  double renewal = 0.0;
-  /* turbulent Schmidt number of langevin: eddy viscosity over what spreads the grains */
-  double schmidt = 1.0;
-  /* of fluctuations, the friction velocity of the grain's slice: from the stress of the stream, or
-   * given, one number or [N] */
-  bool intensity_given = false;
-  Field intensity;
-  std::vector<double> intensities;
+  struct Fluctuations {
+    enum Kind { NONE, CORRELATED, UNCORRELATED, DEPTH, LANGEVIN } kind = NONE;
+    uint64_t seed = 0;
+    /* elevation of the bed: that of the grains, or given */
+    bool find_bed = false;
+    double bed = 0.0;
+    /* 0: depth over mean velocity above the bed */
+    double renewal = 0.0;
+    /* turbulent Schmidt number of langevin: eddy viscosity over what spreads the grains */
+    double schmidt = 1.0;
+    /* the friction velocity of the grain's slice: from the stress of the stream, or given, one number
+     * or [N] */
+    bool intensity_given = false;
+    Field intensity;
+    std::vector<double> intensities;
+  } fluctuations;
   /* phi profiles in the mean that marks the bed (ni_capart) */
   int bed_average = 1;
   bool conserve = true;
@@ -85,7 +88,7 @@ struct VansSettings {
   bool averages() const { return couple == ONE || couple == TWO; }
   /* Errors, unless a solve over T in steps of dt may be done. what: the keyword that asks for it. */
   void check_solve(const Voice &what, double T, double step) const;
-  bool fluctuates() const { return fluctuation != NO_FLUCTUATION; }
+  bool fluctuates() const { return fluctuations.kind != Fluctuations::NONE; }
   bool wants_pores() const
   {
     return fluid.turbulence == SD_VANS_PORE || fluid.turbulence == SD_VANS_ROUSSEAU ||

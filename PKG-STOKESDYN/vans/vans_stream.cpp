@@ -1,7 +1,5 @@
 #include "vans_stream.h"
 
-#include "sd_vans_random.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +21,6 @@ VansStream::VansStream(const VansSettings &settings) :
   drive = mean_drive = sd_vans_drive(&fluid);
   if (set.profile.empty() && fluid.driven && !set.u_top.is_variable()) U[N] = fluid.u_top;
   fluid.radius = set.radius;
-  intensity = set.intensity.number();
   grain.assign(SD_VANS_ROWS * (size_t) N, 0.0);
   for (auto *array :
        {&hindrance, &b, &length, &nut, &stress, &shear_density, &foreseen_density, &outstanding})
@@ -137,8 +134,7 @@ void VansStream::take_averages(double area, const double *sums, const double *fo
   else if (set.conserve && averaged)
     ledger.surface +=
         area * sd_vans_displace(&mesh, &mesh, fluid.rho, before.data(), phi(), U.data(), scratch.data());
-  for (size_t k = 0; k < 2 * N; k++)
-    drag_density[k] = forces[k] / (area * sd_vans_height(&mesh, (int) (k % N)));
+  sd_vans_force_density(&mesh, area, forces, drag_density.data());
   density_known = true;
   if (set.upflow) {
     sd_vans_rise(&mesh, grain.data(), flux, !averaged, upward.data());
@@ -279,18 +275,13 @@ double VansStream::give_back(double area, double T, const Given &given, std::vec
 /* What passed in a solve, into the ledger */
 void VansStream::keep_books(double area, double T, const Given &given, const sd_vans_books &books)
 {
-  double &taken = given.back.empty() ? ledger.others : ledger.transit;
-  for (int n = 0; n < ncell(); n++) taken += area * books.moved[n];
+  sd_vans_ledger_solve(&ledger, area, ncell(), &books, !given.back.empty());
   if (!given.back.empty()) {
     std::fill(shear_density.begin(), shear_density.end(), 0.0);
     std::fill(foreseen_density.begin(), foreseen_density.end(), 0.0);
     sd_vans_hand_over(&wet, phi(), T, &books, shear_density.data(), foreseen_density.data());
   }
   ledger.others += given.others;
-  ledger.driving += area * books.driving;
-  ledger.bottom += area * books.bottom;
-  ledger.walls += area * books.walls;
-  ledger.surface += area * books.surface;
 }
 
 void VansStream::solve(double area, double T, double dt, const Given &given)
@@ -323,21 +314,4 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
   keep_books(area, T, given, books);
   ledger.transit -= given.all + returned;
   tell_bottom();
-}
-
-std::vector<double> VansStream::lagrangian_times(const std::vector<double> &u_star) const
-{
-  std::vector<double> life(ncell(), set.renewal);
-  if (set.renewal == 0.0)
-    sd_vans_lagrangian_times(&mesh, set.schmidt, nut.data(), u_star.data(), life.data());
-  return life;
-}
-
-std::vector<double> VansStream::friction_velocities() const
-{
-  if (!set.intensities.empty()) return set.intensities;
-  std::vector<double> u_star(ncell(), intensity);
-  if (set.intensity_given) return u_star;
-  sd_vans_friction_velocities(&fluid, ncell(), stress.data(), u_star.data());
-  return u_star;
 }

@@ -26,8 +26,6 @@ class VansStream {
   sd_vans_mesh wet;
   /* as the settings have it, and what changes in a run */
   sd_vans_fluid fluid;
-  /* of velocity fluctuations, if the user gives one number */
-  double intensity = 0.0;
   /* [N+1] */
   std::vector<double> U;
   /* profile of all grains, and one after the other those of the classes */
@@ -60,15 +58,9 @@ class VansStream {
   /* also of the classes that there are now? A run may begin with others than the last one had. */
   bool classes_averaged = true;
 
-  /* Numbers that grow: momentum along x, from the first step on. */
-  struct Ledger {
-    /* the water has given it, the grains have not got it yet; six numbers of a restart file */
-    double transit = 0;
-    /* the water got it from outside */
-    double driving = 0, bottom = 0, walls = 0, surface = 0;
-    /* spheres that are averaged but not in the group got it */
-    double others = 0;
-  } ledger;
+  /* six numbers of a restart file; others: spheres that are averaged but not in the group, or all of them
+   * where momentum is not accounted for */
+  sd_vans_ledger ledger = {};
 
   int ncell() const { return mesh.ncell; }
   sd_vans_ambient ambient() const { return {&mesh, &set.law, U.data(), hindrance.data()}; }
@@ -106,16 +98,8 @@ class VansStream {
   double transport() const { return sd_vans_transport(&mesh, grain.data()); }
   double surface() const { return wet.z_ref + wet.edge[wet.ncell - 1]; }
 
-  /* [N] with the sign of the stress, for the fluctuations */
-  std::vector<double> friction_velocities() const;
-  /* [N] of the Langevin walk */
-  std::vector<double> lagrangian_times(const std::vector<double> &u_star) const;
   double largest_stress() const { return sd_vans_largest_stress(&mesh, stress.data()); }
-  /* found, or as the user says */
-  double bed_elevation() const
-  {
-    return set.find_bed ? sd_vans_bed_elevation(&mesh, grain.data()) : set.bed;
-  }
+  double bed_elevation() const { return sd_vans_bed_elevation(&mesh, grain.data()); }
 
   void save(NamedState &state);
   void load(const NamedState &state);

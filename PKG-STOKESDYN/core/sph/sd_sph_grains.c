@@ -122,6 +122,17 @@ void sd_sph_grain_weights(sd_sph_kernel kernel, double h, const sd_sph_around *l
   }
 }
 
+void sd_sph_grain_volumes(int m, const int *row, const double *mass, const double *rho, const double *phi,
+                          double *volume)
+{
+  for (int a = 0; a < m; a++) volume[a] = mass[row[a]] / (rho[row[a]] * (1.0 - phi[row[a]]));
+}
+
+void sd_sph_grain_displace(int m, const int *row, const double *phi, double *mass)
+{
+  for (int a = 0; a < m; a++) mass[row[a]] *= 1.0 - phi[row[a]];
+}
+
 void sd_sph_grain_fractions(const sd_sph_around *list, const sd_sph_grains *grains,
                             const double *volume, double *phi)
 {
@@ -143,6 +154,11 @@ void sd_sph_grain_flux(const sd_sph_around *list, const sd_sph_grains *grains,
       const double share = grains->wet[j] * grains->V[j] * weight[p] / volume[a];
       for (int c = 0; c < 3; c++) flux[3 * a + c] += share * v[3 * (size_t) j + c];
     }
+}
+
+void sd_sph_grain_water_flux(int n, const double *phi, const double *v, double *flux)
+{
+  for (size_t k = 0; k < 3 * (size_t) n; k++) flux[k] += (1.0 - phi[k / 3]) * v[k];
 }
 
 /* Sums that stay in registers: this is most of what grains cost. */
@@ -202,11 +218,17 @@ void sd_sph_grain_phi(int n, const double *mean, const double *own, double *phi)
   }
 }
 
-void sd_sph_grain_stresses(int n, const sd_sph_grains *grains, const double *means, double *F)
+void sd_sph_grain_stresses(const sd_sph_around *list, const sd_sph_grains *grains, int m,
+                           const double *volume, double *forces, double *F)
 {
-  for (int j = 0; j < n; j++)
-    for (int c = 0; c < 3; c++)
-      F[3 * (size_t) j + c] = grains->wet[j] * grains->V[j] * means[3 * (size_t) j + c];
+  for (size_t k = 0; k < 3 * (size_t) m; k++) forces[k] /= volume[k / 3];
+  sd_sph_grain_vector_means(list, forces, F);
+  for (size_t k = 0; k < 3 * (size_t) list->n; k++) F[k] = grains->wet[k / 3] * grains->V[k / 3] * F[k];
+}
+
+void sd_sph_grain_push(int n, double dt, const double *f, const double *F, const double *M, double *v)
+{
+  for (size_t k = 0; k < 3 * (size_t) n; k++) v[k] += dt * (F ? f[k] + F[k] : f[k]) / M[k / 3];
 }
 
 /* D/w for the slip w without the own flow, and what of it that flow takes: w = seen/(1 - taken). */

@@ -93,6 +93,12 @@ void sd_sph_look_around(const sd_cells *cells, const double *points, int n, cons
 void sd_sph_grain_weights(sd_sph_kernel kernel, double h, const sd_sph_around *list,
                           const double *x, const sd_sph_points *points, double *wet);
 
+/* Volumes V_a [m] of the particles that are rows row [m] of all, of masses, densities and phi there */
+void sd_sph_grain_volumes(int m, const int *row, const double *mass, const double *rho, const double *phi,
+                          double *volume);
+/* What grains displace goes: mass and V_a eps_a rho_a are the same again. */
+void sd_sph_grain_displace(int m, const int *row, const double *phi, double *mass);
+
 /* Adds phi_a to phi [m]; volume [m] of the particles, as below. */
 void sd_sph_grain_fractions(const sd_sph_around *list, const sd_sph_grains *grains,
                             const double *volume, double *phi);
@@ -100,6 +106,8 @@ void sd_sph_grain_fractions(const sd_sph_around *list, const sd_sph_grains *grai
 /* Adds what grains of velocities v [3n] carry, q_a - eps_a v_a, to flux [3m]. */
 void sd_sph_grain_flux(const sd_sph_around *list, const sd_sph_grains *grains,
                        const double *volume, const double *v, double *flux);
+/* And what the water carries: eps_a v_a, of n particles */
+void sd_sph_grain_water_flux(int n, const double *phi, const double *v, double *flux);
 
 /* Means of the water at each grain, means [n] out: sum_a w_aj of numbers [m]; and [3n] of vectors
  * [3m]. */
@@ -122,13 +130,18 @@ typedef struct {
 /* phi [n] at each grain without its share: phi = mean - s(phi) own of the mean of phi. */
 void sd_sph_grain_phi(int n, const double *mean, const double *own, double *phi);
 
-/* The part of F that is the water's stress, [3n]: of means <F_a/V_a> [3n]. */
-void sd_sph_grain_stresses(int n, const sd_sph_grains *grains, const double *means, double *F);
+/* The part of F that is the water's stress, [3n]: of forces F_a [3m] on the particles, volume [m]. forces are
+ * divided by these then. */
+void sd_sph_grain_stresses(const sd_sph_around *list, const sd_sph_grains *grains, int m,
+                           const double *volume, double *forces, double *F);
 
 /* What the laws of drag ask at the grains: velocities [3n] of the water and of grains, at one time */
 typedef struct {
   const double *u, *v;
 } sd_sph_slip;
+
+/* Velocities v [3n] in, and out what forces f + F (F NULL: 0) on masses M [n] make of them in a step dt */
+void sd_sph_grain_push(int n, double dt, const double *f, const double *F, const double *M, double *v);
 
 /* D_j/(u_j - v_j) of each grain, k [n]; rho [n] of the water itself. The own flow takes half of the slip at
  * most. */

@@ -49,3 +49,14 @@ void sd_vans_hand_over(const sd_vans_mesh *mesh, const double *phi, double T,
     foreseen[n] = solid > 0.0 ? (books->moved[n] - books->shear[n]) / solid : 0.0;
   }
 }
+
+void sd_vans_ledger_solve(sd_vans_ledger *ledger, double area, int all, const sd_vans_books *books,
+                          int accounted)
+{
+  double *taken = accounted ? &ledger->transit : &ledger->others;
+  for (int n = 0; n < all; n++) *taken += area * books->moved[n];
+  ledger->driving += area * books->driving;
+  ledger->bottom += area * books->bottom;
+  ledger->walls += area * books->walls;
+  ledger->surface += area * books->surface;
+}

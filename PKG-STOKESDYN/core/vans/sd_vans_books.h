@@ -42,6 +42,15 @@ static inline double sd_vans_account_rest(const sd_vans_account *account, double
   return account->foreseen - ratio * (account->impulse - viscous);
 }
 
+/* The same of a grain that is held and has no steps: drag and viscous force push it over the time T as they
+ * do now. impulse: of both, out */
+static inline double sd_vans_account_held(const sd_vans_account *account, double drag, double T, double ratio,
+                                          double *impulse)
+{
+  *impulse = T * (drag + account->shear);
+  return account->foreseen - ratio * T * drag;
+}
+
 /* A tenth of what is outstanding goes back at a time: the differences of single couplings are
  * mostly noise, which would shake the water of a dense bed.
  *   all          slices of the grains, N or more; what is above the surface goes to the slice below it
@@ -60,6 +69,22 @@ void sd_vans_take_out_rest(const sd_vans_mesh *mesh, double rho, double T, const
  * an impulse. */
 void sd_vans_hand_over(const sd_vans_mesh *mesh, const double *phi, double T,
                        const sd_vans_books *books, double *shear, double *foreseen);
+
+/* Momentum along x of a whole stream, numbers that grow from the first step on. What the water has is what it
+ * had and got, less transit, others and what grains got. */
+typedef struct {
+  /* the water has given it, the grains have not got it yet */
+  double transit;
+  /* the water got it from outside */
+  double driving, bottom, walls, surface;
+  /* spheres got it that nobody accounts for */
+  double others;
+} sd_vans_ledger;
+
+/* What passed in a solve over a bed of this area, in `all` slices of `moved`: that is in transit where the
+ * momentum of grains is accounted for, or else others have it. */
+void sd_vans_ledger_solve(sd_vans_ledger *ledger, double area, int all, const sd_vans_books *books,
+                          int accounted);
 
 SD_END_C
 #endif

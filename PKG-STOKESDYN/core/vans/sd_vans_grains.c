@@ -121,6 +121,12 @@ void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums,
   }
 }
 
+void sd_vans_force_density(const sd_vans_mesh *mesh, double area, const double *forces, double *density)
+{
+  const int N = mesh->ncell;
+  for (int k = 0; k < 2 * N; k++) density[k] = forces[k] / (area * sd_vans_height(mesh, k % N));
+}
+
 /* The last of the shares is what is left of the value, so that none is lost to rounding. */
 void sd_vans_spread(const sd_vans_mesh *mesh, int point, const sd_vans_grains *grains,
                     const double *value, double *out)

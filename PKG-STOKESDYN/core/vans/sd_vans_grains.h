@@ -115,6 +115,28 @@ typedef struct {
  * rule: no force at all. */
 int sd_vans_forces(const sd_vans_ambient *stream, const sd_vans_grains *grains, double *F, double *drag_x);
 
+/* For the added mass: the velocity of a grain when it was seen last, and how much of a step lies between that
+ * and the next one; 0: nothing is known */
+typedef struct {
+  double v[3], span;
+} sd_vans_motion;
+/* A run begins with the velocity of its step, half a step before the next that is seen. */
+static inline void sd_vans_motion_begin(sd_vans_motion *m, const double v[3])
+{
+  for (int d = 0; d < 3; d++) m->v[d] = v[d];
+  m->span = 0.5;
+}
+/* After a step of dt: dv/dt, which stays as it is where nothing is known */
+static inline void sd_vans_motion_step(sd_vans_motion *m, const double v[3], double dt,
+                                       double acceleration[3])
+{
+  for (int d = 0; d < 3; d++) {
+    if (m->span > 0.0) acceleration[d] = (v[d] - m->v[d]) / (m->span * dt);
+    m->v[d] = v[d];
+  }
+  m->span = 1.0;
+}
+
 /* The largest rate at which drag takes the velocity of a grain to that of the water, dF/dw/m over
  * the grains that take part, and which grain: a step of velocity Verlet must be shorter than
  * 2/rate. mass [n]. 0 if there is none. */
@@ -170,6 +192,9 @@ int sd_vans_average(const sd_vans_ambient *stream, const sd_vans_averaging *how,
  * V, 0 where there is no grain. */
 void sd_vans_profiles(const sd_vans_mesh *mesh, double area, const double *sums, double *profile);
 
+/* The same of forces [2][N] in each slice (sd_vans_averaging): per volume of mixture */
+void sd_vans_force_density(const sd_vans_mesh *mesh, double area, const double *forces, double *density);
+
 /* Spreads one value of each sphere over the slices by their share of its volume: out [N] += value.
  * What belongs to the part of a sphere outside the mesh goes to the lowest or the highest slice, so
  * that the sum over slices grows by the sum over spheres. */
@@ -186,6 +211,8 @@ void sd_vans_gather(const sd_vans_mesh *mesh, int point, const sd_vans_grains *g
  * is the volume of the union: exact while no three spheres overlap in one place, to 1e-6 of the
  * sphere otherwise. As many spheres may cut it as there are. x [n][3], a [n]. -1: out of memory. */
 double sd_vans_union_share(int n, const double *x, const double *a, int i);
+/* Are two of n spheres nearer than `part` of the sum of their radii? x [n][3] ascends along x, a [n] */
+int sd_vans_any_nearer(int n, const double *x, const double *a, double part);
 
 SD_END_C
 #endif

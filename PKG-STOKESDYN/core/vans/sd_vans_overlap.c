@@ -68,15 +68,14 @@ static double disc_area(double r, int count, const lines *line)
   return 0.5 * (r * r * fmax(2 * SD_PI - covered, 0.0) + chords);
 }
 
-/* The lines in which the planes 1 to count - 1 meet the disc of radius r at the height z along the
- * axis; how many cut it, or -1 if one of them leaves nothing of it. */
-static int lines_in(double r, double z, const double axis[3], const double side[3],
-                    const double up[3], int count, const cut *cuts, const lines *line)
+/* The lines in which the planes 1 to count - 1 meet the disc of radius r at the height z along the third axis of a
+ * frame; how many cut it, or -1 if one of them leaves nothing of it. */
+static int lines_in(double r, double z, const double frame[3][3], int count, const cut *cuts, const lines *line)
 {
   int found = 0;
   for (int k = 1; k < count; k++) {
-    const double mx = sd_dot(cuts[k].n, side), my = sd_dot(cuts[k].n, up),
-                 c = cuts[k].h - sd_dot(cuts[k].n, axis) * z, size = hypot(mx, my);
+    const double mx = sd_dot(cuts[k].n, frame[0]), my = sd_dot(cuts[k].n, frame[1]),
+                 c = cuts[k].h - sd_dot(cuts[k].n, frame[2]) * z, size = hypot(mx, my);
     if (size < 1e-14 ? c < 0.0 : c <= -r * size) return -1;
     if (size < 1e-14 || c >= r * size) continue;
     line->m[found][0] = mx / size;
@@ -96,10 +95,10 @@ static double integrate(double a, int count, const cut *cuts, const lines *line)
                                  0.9602898564975363};
   static const double gauss[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
                                   0.1012285362903763};
-  const double *axis = cuts[0].n;
-  double side[3], up[3], volume = 0.0; /* with axis an orthonormal frame */
-  sd_across(axis, side);
-  sd_cross(axis, side, up);
+  double frame[3][3], volume = 0.0;
+  for (int d = 0; d < 3; d++) frame[2][d] = cuts[0].n[d];
+  sd_across(frame[2], frame[0]);
+  sd_cross(frame[2], frame[0], frame[1]);
   const double end = asin(fmax(-1.0, fmin(1.0, cuts[0].h / a)));
   enum { PANELS = 200 };
   const double width = (end + SD_PI / 2) / PANELS;
@@ -107,7 +106,7 @@ static double integrate(double a, int count, const cut *cuts, const lines *line)
     for (int q = 0; q < 8; q++) {
       const double t = -SD_PI / 2 + (p + 0.5 + 0.5 * (q < 4 ? node[q] : -node[q - 4])) * width,
                    z = a * sin(t), r = a * cos(t);
-      const int found = lines_in(r, z, axis, side, up, count, cuts, line);
+      const int found = lines_in(r, z, frame, count, cuts, line);
       if (found >= 0) /* dz = a cos t dt = r dt */
         volume += 0.5 * width * gauss[q % 4] * disc_area(r, found, line) * r;
     }
@@ -167,4 +166,17 @@ double sd_vans_union_share(int n, const double *x, const double *a, int i)
       volume -= SD_PI * (ai - cuts[k].h) * (ai - cuts[k].h) * (2.0 * ai + cuts[k].h) / 3.0;
   free(cuts);
   return volume / all;
+}
+
+/* Along x only those are compared that are within two of the largest radii. */
+int sd_vans_any_nearer(int n, const double *x, const double *a, double part)
+{
+  double largest = 0.0;
+  for (int i = 0; i < n; i++) largest = fmax(largest, a[i]);
+  for (int i = 0; i < n; i++)
+    for (int j = i + 1; j < n && x[3 * (long) j] - x[3 * (long) i] <= 2.0 * part * largest; j++) {
+      const double reach = part * (a[i] + a[j]);
+      if (sd_distance_squared(x + 3 * (long) i, x + 3 * (long) j) < reach * reach) return 1;
+    }
+  return 0;
 }

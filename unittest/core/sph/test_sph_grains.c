@@ -81,22 +81,20 @@ static void forces_work_on_the_flux(void **state)
 {
   (void) state;
   uint64_t seed = 12;
-  double f[3 * WATER], v[3 * WATER], U[3 * GRAINS], per_volume[3 * WATER], mean[3 * GRAINS],
-      T[3 * GRAINS], phi[WATER] = {0.0}, q[3 * WATER] = {0.0}, work = 0.0, of_flux = 0.0,
-      size = 0.0, kept[3] = {0.0};
+  double f[3 * WATER], v[3 * WATER], U[3 * GRAINS], shared[3 * WATER], T[3 * GRAINS], phi[WATER] = {0.0},
+      q[3 * WATER] = {0.0}, work = 0.0, of_flux = 0.0, size = 0.0, kept[3] = {0.0};
   for (int k = 0; k < 3 * WATER; k++) {
     f[k] = wall[k / 3] ? 0.0 : uniform(&seed, -1.0, 2.0);
     v[k] = uniform(&seed, -3.0, 1.0);
-    per_volume[k] = f[k] / volume[k / 3];
+    shared[k] = f[k];
   }
   for (int k = 0; k < 3 * GRAINS; k++) U[k] = uniform(&seed, -1.0, 5.0);
-  sd_sph_grain_vector_means(&list, per_volume, mean);
-  sd_sph_grain_stresses(GRAINS, &grains, mean, T);
+  sd_sph_grain_stresses(&list, &grains, WATER, volume, shared, T);
   sd_sph_grain_fractions(&list, &grains, volume, phi);
   sd_sph_grain_flux(&list, &grains, volume, U, q);
+  sd_sph_grain_water_flux(WATER, phi, v, q);
   for (int k = 0; k < 3 * WATER; k++) {
     const double eps = 1.0 - phi[k / 3];
-    q[k] += eps * v[k];
     work += eps * f[k] * v[k];
     kept[k % 3] -= phi[k / 3] * f[k];
     of_flux += f[k] * q[k];
@@ -259,6 +257,35 @@ static void stiff_drag_takes_energy(void **state)
   assert_true(before - after >= possible * (1.0 - 1e-9));
 }
 
+/* Water that is displaced by the grains leaves room for them: the particles keep their volumes. */
+static void grains_displace_water(void **state)
+{
+  (void) state;
+  const double rho[4] = {1.1, 1.2, 1.3, 1.4}, none[4] = {0.0}, phi[4] = {0.3, 0.5, 0.0, 0.2};
+  const int row[3] = {3, 0, 1};
+  double mass[4] = {0.4, 0.5, 0.6, 0.7}, before[3], after[3];
+  sd_sph_grain_volumes(3, row, mass, rho, none, before);
+  CHECK_NEAR(before[0], 0.7 / 1.4, 1e-15);
+  sd_sph_grain_displace(3, row, phi, mass);
+  sd_sph_grain_volumes(3, row, mass, rho, phi, after);
+  for (int a = 0; a < 3; a++) CHECK_NEAR(after[a], before[a], 1e-15);
+  CHECK_NEAR(mass[3], 0.8 * 0.7, 1e-15);
+  assert_true(mass[2] == 0.6);
+}
+
+/* Momentum grows by the impulse of both forces; what forces do not move keeps its velocity. */
+static void a_push_is_an_impulse(void **state)
+{
+  (void) state;
+  const double dt = 0.03, f[6] = {1, 2, 3, 4, 5, 6}, F[6] = {-0.3, 0.2, 0.1, 7, 8, 9}, M[2] = {0.7, HUGE_VAL};
+  for (int both = 0; both < 2; both++) {
+    double v[6] = {0.5, -0.5, 0.25, 1, 2, 3};
+    sd_sph_grain_push(2, dt, f, both ? F : NULL, M, v);
+    CHECK_NEAR(M[0] * (v[1] + 0.5), dt * (f[1] + (both ? F[1] : 0.0)), 1e-15);
+    assert_true(v[3] == 1 && v[4] == 2 && v[5] == 3);
+  }
+}
+
 /* The water between fixed grains is squeezed by 1/eps of what the flux brings; what shift adds
  * stays. */
 static void rates_are_those_of_the_room_between_grains(void **state)
@@ -286,6 +313,8 @@ int main(void)
                                      cmocka_unit_test(a_lone_grain_sees_no_other),
                                      cmocka_unit_test(drag_is_that_of_the_law),
                                      cmocka_unit_test(stiff_drag_takes_energy),
+                                     cmocka_unit_test(grains_displace_water),
+                                     cmocka_unit_test(a_push_is_an_impulse),
                                      cmocka_unit_test(rates_are_those_of_the_room_between_grains)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

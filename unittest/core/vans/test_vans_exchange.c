@@ -127,6 +127,18 @@ static void what_no_grain_gets_goes_out_of_the_books(void **state)
   assert_true(moved[2] == 0.1 && moved[3] == 0.0 && shear[1] == 0.02 && books.driving == 1);
 }
 
+/* A grain that is held has the account of one that moves by steps while drag and viscous force stay the same. */
+static void a_held_grain_is_one_whose_drag_stays(void **state)
+{
+  (void) state;
+  const double drag = 1.1, dt = 0.05, T = 10 * dt, ratio = 1.7;
+  sd_vans_account moves = {.force = drag + 0.3, .shear = 0.3, .past = 0.3, .foreseen = 0.7}, held = moves;
+  double impulse;
+  for (int step = 0; step < 10; step++) sd_vans_account_step(&moves, drag + moves.shear, dt);
+  CHECK_NEAR(sd_vans_account_held(&held, drag, T, ratio, &impulse), sd_vans_account_rest(&moves, T, dt, ratio), 1e-14);
+  CHECK_NEAR(impulse, moves.impulse, 1e-14);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -136,6 +148,7 @@ int main(void)
       cmocka_unit_test(exchange_by_law_takes_the_drag_as_it_is),
       cmocka_unit_test(momentum_goes_back_in_tenths),
       cmocka_unit_test(what_no_grain_gets_goes_out_of_the_books),
+      cmocka_unit_test(a_held_grain_is_one_whose_drag_stays),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,8 @@
 /* The fluid alone: closed forms, orders of convergence, balance of momentum. */
 #include "column.h"
 
+#include "sd_vans_books.h"
+
 /* Plane Poiseuille flow, both plates at rest, H apart */
 static const double H = 0.7;
 static const sd_vans_fluid BETWEEN_PLATES = {.rho = 1100,
@@ -226,6 +228,35 @@ static void discharge_is_held_step_by_step(void **state)
   column_free(c);
 }
 
+/* Over a bed of any area the ledger of two solves, one of which nobody accounts for, adds up to what the water has
+ * won or lost. */
+static void ledger_of_a_stream_balances(void **state)
+{
+  (void) state;
+  const double area = 0.37;
+  column *c = column_create(41, 0.06, 0.0);
+  const sd_vans_fluid fluid = {.rho = 1000, .eta = 1e-3, .gx = 0.4, .turbulence = SD_VANS_LI_SAWAMOTO, .kappa = 0.41,
+                               .phi_max = 0.61, .width = 0.05, .wall_coef = 1, .driven = 1, .u_top = 0.3};
+  for (int n = 0; n < 41; n++) {
+    c->phi[n] = 0.55 / (1.0 + exp(0.7 * (n - 15)));
+    c->b[n] = 30 * c->phi[n];
+  }
+  find_lengths(c, &fluid, NULL);
+  const sd_vans_column column = {c->phi, c->vx, c->b, c->length, NULL};
+  const sd_vans_flow flow = {c->U, c->nut, c->stress};
+  sd_vans_ledger ledger = {.transit = 0.5};
+  for (int accounted = 0; accounted < 2; accounted++) {
+    sd_vans_books in = {c->moved, c->shear, 0, 0, 0, 0, 0};
+    assert_int_equal(sd_vans_solve(c->solver, &fluid, &column, 300, 1e-3, &flow, &in), SD_OK);
+    sd_vans_ledger_solve(&ledger, area, 41, &in, accounted);
+    assert_true(ledger.others > 0.01 && (ledger.transit > 0.51) == accounted);
+  }
+  const double got = ledger.driving + ledger.bottom + ledger.walls + ledger.surface;
+  const double has = area * sd_vans_momentum(&c->mesh, 1000, c->phi, c->U);
+  CHECK_NEAR(has, got - (ledger.transit - 0.5) - ledger.others, 1e-11 * ledger.driving);
+  column_free(c);
+}
+
 /* A surface between two edges: the water below it has the volume that is asked for, wherever the
  * surface falls, and what is displaced from one surface to another keeps all its momentum. */
 static void water_fills_the_mesh_up_to_its_surface(void **state)
@@ -286,6 +317,7 @@ int main(void)
       cmocka_unit_test(momentum_is_balanced),
       cmocka_unit_test(displaced_water_keeps_its_momentum),
       cmocka_unit_test(discharge_is_held_step_by_step),
+      cmocka_unit_test(ledger_of_a_stream_balances),
       cmocka_unit_test(water_fills_the_mesh_up_to_its_surface),
       cmocka_unit_test(number_of_steps),
   };

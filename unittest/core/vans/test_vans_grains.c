@@ -381,6 +381,52 @@ static void grains_have_the_volume_that_a_pressure_pushes(void **state)
   CHECK_NEAR(F[0] + F[3], -V * dpdx, 1e-15);
 }
 
+/* In a row of spheres that touch nobody is nearer than a contact; whoever is pressed into any other is found, also if
+ * a small one stands between them. */
+static void who_is_pressed_is_found(void **state)
+{
+  (void) state;
+  double x[15] = {0, 0, 0, 0.9, 1.4, 0, 2, 0, 0, 4, 0, 0, 6, 0, 0}, a[5] = {1, 0.3, 1, 1, 1};
+  assert_false(sd_vans_any_nearer(5, x, a, 0.9));
+  for (int k = 1; k < 5; k++) {
+    double y[15];
+    memcpy(y, x, sizeof(y));
+    y[3 * k] -= 0.21;
+    y[3 * k + 1] -= k == 1 ? 0.5 : 0.0;
+    assert_true(sd_vans_any_nearer(5, y, a, 0.9));
+    assert_false(sd_vans_any_nearer(5, y, a, 0.6));
+  }
+}
+
+/* Forces along x, then those along z, of slices of any height. */
+static void forces_are_per_volume_of_their_slice(void **state)
+{
+  (void) state;
+  const double edge[4] = {0, 1, 3, 6}, forces[6] = {2, 4, 6, -8, -16, -24};
+  const sd_vans_mesh mesh = {3, 0.2, 0.0, edge};
+  double density[6];
+  sd_vans_force_density(&mesh, 2.0, forces, density);
+  for (int k = 0; k < 6; k++) CHECK_NEAR(density[k], k < 3 ? 1.0 : -4.0, 1e-15);
+}
+
+/* Of a grain that accelerates evenly the steps of velocity Verlet show that, the first one as well, which is half a
+ * step from the velocity that a run begins with; of what nobody has seen nothing is said. */
+static void steps_show_the_acceleration(void **state)
+{
+  (void) state;
+  const double dt = 0.02, a[3] = {0.7, -1.1, 9.7}, v[3] = {0.3, 0.2, -0.4};
+  sd_vans_motion motion = {{0}, 0.0}, unseen = {{0}, 0.0};
+  double now[3], found[3] = {7.0, 7.0, 7.0};
+  sd_vans_motion_step(&unseen, v, dt, found);
+  for (int d = 0; d < 3; d++) assert_true(found[d] == 7.0 && unseen.v[d] == v[d]);
+  sd_vans_motion_begin(&motion, v);
+  for (int step = 0; step < 3; step++) {
+    for (int d = 0; d < 3; d++) now[d] = v[d] + (step + 0.5) * dt * a[d];
+    sd_vans_motion_step(&motion, now, dt, found);
+    for (int d = 0; d < 3; d++) CHECK_NEAR(found[d], a[d], 1e-12);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -389,6 +435,9 @@ int main(void)
       cmocka_unit_test(slices_end_at_the_mesh),
       cmocka_unit_test(yade_mirrors_the_slices),
       cmocka_unit_test(point_grains_stay_in_one_slice),
+      cmocka_unit_test(who_is_pressed_is_found),
+      cmocka_unit_test(forces_are_per_volume_of_their_slice),
+      cmocka_unit_test(steps_show_the_acceleration),
       cmocka_unit_test(drag_balances_weight_at_terminal_velocity),
       cmocka_unit_test(hindrance_has_its_exponent),
       cmocka_unit_test(lift_sees_both_ends_of_the_grain),
