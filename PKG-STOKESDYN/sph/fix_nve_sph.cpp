@@ -24,9 +24,10 @@ int FixNveSph::setmask()
 }
 
 /* The estimate that the last run left, if nobody has changed a velocity since: that of the unbroken
- * run. Otherwise v. */
+ * run. Otherwise v. Not for write_data, which calls this too, and which no force follows. */
 void FixNveSph::setup_pre_exchange()
 {
+  if (!update->setupflag) return;
   goes_on = end.still_stands(groupbit);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;

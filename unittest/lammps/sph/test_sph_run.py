@@ -72,7 +72,14 @@ def test_run_in_pieces_is_one_run(unbroken):
     same(trajectory(scene("run 37\nrun 0\nrun 63")), unbroken)
 
 
-@pytest.mark.parametrize("how", ["run 50\nwrite_restart {0}", "restart 50 {0}\nrun 60\nshell mv {0}.50 {0}"])
+def test_a_data_file_that_is_written_between_two_runs_changes_nothing(unbroken, tmp_path):
+    """LAMMPS prepares a run for it, of which no force comes."""
+    write = f"write_data {tmp_path}/data\n"
+    same(trajectory(scene("run 37\n" + 2 * write + "run 63")), unbroken)
+
+
+@pytest.mark.parametrize("how", ["run 50\nwrite_restart {0}", "restart 50 {0}\nrun 60\nshell mv {0}.50 {0}",
+                                 "run 50\nwrite_data {0}.data\nwrite_restart {0}"])
 def test_restart_without_pair_style(how, unbroken, tmp_path):
     """The pair style and its coefficients come back from the file; the fixes are given again, as LAMMPS wants it."""
     path = str(tmp_path / "restart")
