@@ -57,18 +57,44 @@ def lamb(k, depth, nu, sigma):
     return s.imag * theta * omega, -s.real * theta * omega
 
 
+def begun(n, nu, sigma, h, size, more):
+    """LAMMPS with the tank, the speed of sound, and the time step"""
+    c = 10 * max(1.0, np.sqrt(sigma * K))
+    dt = 0.3 * h / n / c
+    lmp = start()
+    numbers = {"c": c, "per_area": n * n, "size": size}
+    run(lmp, "\n".join(f"variable {name} equal {value:.17g}" for name, value in numbers.items()))
+    run(lmp, TANK.format(per_area=n * n, floor=-6 / n, back=-0.5 / n, front=0.5 / n, skin=0.3 / n, h=h / n, nu=nu,
+                         dt=dt, tension="yes" if sigma else "no", more=more))
+    return lmp, dt
+
+
+def tension_on_wave(n, h=2.0, sigma=0.1, height=0.004):
+    """Of the force of fix sph/tension on a wave at rest: its sum, and its work on the motion of the wave, over those of
+    a tension at the surface itself."""
+    found = []
+    for a in (height, -height):
+        lmp, _ = begun(n, 0.005, sigma, h, 0.0, "")
+        run(lmp, f"""variable along atom -{a / 2 / np.sinh(K * DEPTH):.17g}*sin(2*PI*x)*(exp(2*PI*y)+exp(-2*PI*y))
+            variable up atom {a / 2 / np.sinh(K * DEPTH):.17g}*cos(2*PI*x)*(exp(2*PI*y)-exp(-2*PI*y))""")
+        water, at = by_id(lmp, "type") == 1, K * by_id(lmp, "x", 3)
+        run(lmp, f"displace_atoms water move v_along v_up 0 units box\nfix tension water sph/tension {sigma}\nrun 0")
+        F = by_id(lmp, "f", 3).copy()
+        run(lmp, "unfix tension\nrun 0")
+        F = (F - by_id(lmp, "f", 3))[water]
+        lmp.close()
+        at = at[water]
+        motion = np.array([-np.sin(at[:, 0]) * np.cosh(at[:, 1]), np.cos(at[:, 0]) * np.sinh(at[:, 1])]).T
+        found.append((F[:, 1] @ np.cos(at[:, 0]), (F[:, :2] * motion).sum() / np.sinh(K * DEPTH)))
+    return (np.array(found[1]) - found[0]) / (sigma * height * K * K)
+
+
 def standing(n, nu=0.002, sigma=0.0, h=2.0, periods=6):
     """Frequency and damping over Lamb's, of a wave of height 0.02 that is let go where it is plane: n particles per
     wave length, h in spacings."""
     omega, damping = lamb(K, DEPTH, nu, sigma)
-    c = 10 * max(1.0, np.sqrt(sigma * K))
-    dt = 0.3 * h / n / c
-    lmp = start()
-    numbers = {"c": c, "per_area": n * n, "size": 0.02 * omega / (2 * np.sinh(K * DEPTH))}
-    run(lmp, "\n".join(f"variable {name} equal {value:.17g}" for name, value in numbers.items()))
-    run(lmp, TANK.format(per_area=n * n, floor=-6 / n, back=-0.5 / n, front=0.5 / n, skin=0.3 / n, h=h / n, nu=nu,
-                         dt=dt, tension="yes" if sigma else "no",
-                         more=f"fix tension water sph/tension {sigma}" if sigma else ""))
+    lmp, dt = begun(n, nu, sigma, h, 0.02 * omega / (2 * np.sinh(K * DEPTH)),
+                    f"fix tension water sph/tension {sigma}" if sigma else "")
     every, t, mode = int(2 * np.pi / omega / 20 / dt), [], []
     for sample in range(int(periods * 20) + 1):
         run(lmp, f"run {every if sample else 0} post no")

@@ -3,7 +3,7 @@ unittest/bench/sph_waves.py."""
 import numpy as np
 import pytest
 
-from sph_water_waves import lamb, standing
+from sph_water_waves import lamb, standing, tension_on_wave
 
 
 def test_lambs_wave_has_its_limits():
@@ -22,3 +22,11 @@ def test_a_standing_wave_rings_as_lamb_has_it(scene, frequency, damping):
     found = standing(16, periods=4, **scene)
     assert found[0] == pytest.approx(frequency, abs=0.01)
     assert found[1] == pytest.approx(damping, abs=0.05)
+
+
+def test_tension_on_a_wave_has_the_right_sum_and_works_as_below_the_surface():
+    """Which is why capillary waves are slow in proportion to h: doc/fix_sph_tension.md."""
+    for n, work in ((32, 0.861), (64, 0.931)):
+        found = tension_on_wave(n)
+        assert found[0] == pytest.approx(1.012, abs=0.005)
+        assert found[1] == pytest.approx(work, abs=0.005)
