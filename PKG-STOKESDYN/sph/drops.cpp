@@ -30,7 +30,9 @@ void Drops::find(const sd_sph_film &film, const ToGhosts &to_ghosts)
   for (size_t i = 0; i < n; i++) name[i] = (double) atom->tag[i];
   int changed = 1;
   while (changed) {
-    changed = largest_of_all(world, sd_sph_name_drops(film.all, parent.data(), name.data()));
+    changed = sd_sph_name_drops(film.all, parent.data(), name.data());
+    // who has no ghosts is in no drop of another rank
+    changed = largest_of_all(world, changed && film.all > film.list->n ? 1 : 0);
     if (changed) to_ghosts(name.data());
   }
 }

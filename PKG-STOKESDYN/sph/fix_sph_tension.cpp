@@ -181,7 +181,7 @@ void FixSphTension::look_at_particles()
 {
   const int n = atom->nlocal + atom->nghost, nlocal = atom->nlocal;
   list = pair->neighbours_of_each();
-  film = {&surface, &list, n, nullptr, nullptr, nullptr, nullptr};
+  film = {&surface, &list, n, nullptr, nullptr, nullptr, nullptr, 0};
   x4.resize(4 * (size_t) (n + 1));
   sd_sph_pack_x(n, n ? atom->x[0] : nullptr, nullptr, nullptr, 0.0, x4.data());
   mass.resize(nlocal + 1);
@@ -195,7 +195,7 @@ void FixSphTension::look_at_particles()
   }
   film.x4 = x4.data();
   film.inside = inside.data();
-  find_deep();
+  find_near();
   if (!walls) return;
   wall.assign(n + 1, 0);
   for (int i = 0; i < n; i++) wall[i] = pair->is_of_wall(i);
@@ -218,14 +218,15 @@ void FixSphTension::make_rows()
 }
 
 /* Where the surface may be: in supports that are cut, and beside walls. */
-void FixSphTension::find_deep()
+void FixSphTension::find_near()
 {
   marked.resize(film.all);
   for (int i = 0; i < film.all; i++) marked[i] = !inside[i] && x4[4 * (size_t) i + 3] > 0.0;
-  deep.resize(atom->nlocal);
+  near.resize(atom->nlocal + 1);
   cells.resize(SD_SPH_DEEP_CELLS(film.all));
-  sd_sph_find_deep(film.all, atom->nlocal, x4.data(), marked.data(), 2.0 * surface.h, cells.data(), deep.data());
-  film.deep = deep.data();
+  film.count = sd_sph_find_near(film.all, atom->nlocal, x4.data(), marked.data(), 2.0 * surface.h, cells.data(),
+                                near.data());
+  film.near = near.data();
 }
 
 void FixSphTension::find_normals()
@@ -255,7 +256,8 @@ void FixSphTension::find_normals()
 /* The wetness of a wall particle needs its neighbours in the wall, which inputs often exclude. */
 void FixSphTension::look_at_walls() const
 {
-  for (int i = 0; i < atom->nlocal; i++) {
+  for (int k = 0; k < film.count; k++) {
+    const int i = near[k];
     const double *row = &sums[8 * (size_t) i], own = x4[4 * (size_t) i + 3] *
         sd_sph_W(surface.kernel, surface.dimension, 0.0, surface.h);
     if (wall[i] && row[0] > 0.0 && row[4] < 1.001 * own)
@@ -313,8 +315,9 @@ void FixSphTension::add_forces()
 {
   const int nlocal = atom->nlocal;
   held.assign(nlocal + 1, 0.0);
-  for (int i = 0; i < nlocal; i++)
-    held[i] = (walls && sums[8 * (size_t) i + 4] > 0.0) || pair->is_held(i) ? 1.0 : 0.0;
+  for (int i = 0; i < nlocal && pair->has_ends(); i++) held[i] = pair->is_held(i) ? 1.0 : 0.0;
+  for (int k = 0; k < film.count && walls; k++)
+    if (sums[8 * (size_t) near[k] + 4] > 0.0) held[near[k]] = 1.0;
   drops.keep_momentum(film, mass.data(), held.data(), [this](double *name) { forward(name, 1); }, F.data());
   for (int i = 0; i < nlocal; i++)
     for (int d = 0; d < 3; d++) atom->f[i][d] += F[3 * (size_t) i + d];

@@ -60,14 +60,14 @@ class FixSphTension : public SphFix {
   sd_sph_film film = {};
   sd_sph_film_rows rows = {};
   Rows x4, v4, at_surface, contact, whole, at_wall, sums, beside, turns;
-  std::vector<int> wall, skin;
+  std::vector<int> wall, skin, near;
   std::vector<size_t> first;
-  std::vector<char> inside, marked, cells, deep, shows;
+  std::vector<char> inside, marked, cells, shows;
   std::vector<double> one, kappa, once, twice, weights, F, area, mass, held;
   Drops drops;
   void look_at_particles();
   void make_rows();
-  void find_deep();
+  void find_near();
   void find_normals();
   void find_curvatures();
   const double *spread(const std::vector<double> &k);

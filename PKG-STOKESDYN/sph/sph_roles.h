@@ -83,7 +83,7 @@ class SphRoles : protected LAMMPS_NS::Pointers {
   /* the open end in whose layer it stands; is there one? */
   FixSphInlet *inlet_of(int i) const;
   FixSphOutlet *outlet_of(int i) const;
-  bool is_held(int i) const { return inlet_of(i) || outlet_of(i); }
+  bool is_held(int i) const { return has_ends() && (inlet_of(i) || outlet_of(i)); }
   /* Does a fix sph/pressure have it? Which one? */
   bool has_state(int i) const;
   const FixSphPressure *state_of(int i) const;

@@ -130,13 +130,14 @@ void sd_sph_film_sums(const sd_sph_film *f, const sd_sph_film_rows *rows)
 {
   loops_of_films()->sums(f, rows->sums);
   const double W0 = sd_sph_W(f->surface->kernel, f->surface->dimension, 0.0, f->surface->h);
-  for (int i = 0; i < f->list->n; i++)
+  for EACH_NEAR(f, row, i)
     rows->sums[8 * (size_t) i + (film_is_wall(f, i) ? 4 : 0)] += W0 * f->x4[4 * (size_t) i + 3];
 }
 
 void sd_sph_film_wetness(const sd_sph_film *f, const sd_sph_film_rows *rows, double *wet)
 {
-  for (int i = 0; i < f->list->n; i++) {
+  memset(wet, 0, sizeof(double) * (size_t) f->list->n);
+  for EACH_NEAR(f, row, i) {
     const double S = rows->sums[8 * (size_t) i], Sw = rows->sums[8 * (size_t) i + 4];
     wet[i] = film_is_wall(f, i) && Sw <= 0.98 ? fmin(1.0, S / fmax(1.0 - Sw, 0.02)) : 0.0;
   }
@@ -187,7 +188,7 @@ void sd_sph_film_normals(const sd_sph_film *f, const sd_sph_film_rows *rows)
 {
   static const double FROM = 0.1, TO = 0.3;    // of h |G|
   const double h = f->surface->h;
-  for (int i = 0; i < f->list->n; i++) {
+  for EACH_NEAR(f, row, i) {
     const double *of = rows->sums + 8 * (size_t) i, *beside = rows->beside ? rows->beside + 8 * (size_t) i : NULL;
     double *S_G = rows->whole + 4 * (size_t) i, *n = rows->surface + 4 * (size_t) i;
     double *contact = rows->at_wall ? rows->at_wall + 8 * (size_t) i : NULL;
@@ -266,13 +267,10 @@ static void along_surface(const double *n, double A[9])
 
 size_t sd_sph_skin_size(const sd_sph_film *f, const sd_sph_film_rows *rows)
 {
-  size_t size = SD_SPH_LANES, most = 0;
-  for (int i = 0; i < f->list->n; i++) {
-    const size_t count = (size_t) f->list->count[i];
-    if (rows->surface[4 * (size_t) i + 3] > 0.0) size += count;
-    if (count > most) most = count;
-  }
-  return size + most;    // of one particle inside
+  size_t size = SD_SPH_LANES;
+  for EACH_NEAR(f, row, i)
+    if (rows->surface[4 * (size_t) i + 3] > 0.0) size += (size_t) f->list->count[i];
+  return size;
 }
 
 void sd_sph_film_curvatures(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *v4,
@@ -280,10 +278,10 @@ void sd_sph_film_curvatures(const sd_sph_film *f, const sd_sph_film_rows *rows, 
 {
   const double *surface = rows->surface, *at_wall = rows->at_wall;
   double gradient[9];
+  memset(kappa, 0, sizeof(double) * (size_t) f->list->n);
   for (int i = 0; i <= f->all; i++) skin->shows[i] = surface[4 * (size_t) i + 3] != 0.0;
   loops_of_films()->turns(f, rows, v4, skin);
-  for (int i = 0; i < f->list->n; i++) {
-    kappa[i] = 0.0;
+  for EACH_NEAR(f, row, i) {
     if (!(surface[4 * (size_t) i + 3] > 0.0)) continue;
     corrected_gradient(f->surface->dimension, rows->turns + SD_SPH_SKIN_SUMS * (size_t) i, gradient);
     along_surface(surface + 4 * (size_t) i, gradient);
@@ -295,8 +293,9 @@ void sd_sph_film_curvatures(const sd_sph_film *f, const sd_sph_film_rows *rows, 
 void sd_sph_film_means(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin,
                        const double *k, double *mean)
 {
+  memset(mean, 0, sizeof(double) * (size_t) f->list->n);
   loops_of_films()->means(f, skin, k, mean);
-  for (int i = 0; i < f->list->n; i++) {
+  for EACH_NEAR(f, row, i) {
     const double w = rows->surface[4 * (size_t) i + 3], own = w > 0.0 ? own_share(f, i) * w : 0.0;
     mean[i] = w > 0.0 ? (mean[i] + own * k[i]) / (rows->turns[SD_SPH_SKIN_SUMS * (size_t) i + 15] + own) : 0.0;
   }
@@ -306,7 +305,7 @@ void sd_sph_film_sharpen(const sd_sph_film *f, const sd_sph_film_rows *rows, con
                          const double *twice, double *ks)
 {
   static const double SHARPER = 2.8, DEEPER = 0.16;
-  for (int i = 0; i < f->list->n; i++) {
+  for EACH_NEAR(f, row, i) {
     const double nw = rows->at_wall ? rows->at_wall[8 * (size_t) i + 3] : 0.0;
     const double k = (1.0 - nw) * (once[i] + SHARPER * (once[i] - twice[i])) + nw * kappa[i];
     ks[i] = k * (1.0 + DEEPER / (f->surface->dimension - 1) * f->surface->h * k);
@@ -317,8 +316,8 @@ void sd_sph_film_inwards(const sd_sph_film *f, const sd_sph_film_rows *rows, con
                          double *k)
 {
   sd_sph_film_means(f, rows, skin, ks, k);
-  loops_of_films()->inwards(f, rows, skin, ks, k);
-  for (int i = 0; i < f->list->n; i++) {
+  loops_of_films()->inwards(f, rows, ks, k);
+  for EACH_NEAR(f, row, i) {
     const double w = rows->surface[4 * (size_t) i + 3];
     if (w > 0.0) k[i] = w * ks[i] + (1.0 - w) * k[i];
   }
@@ -330,7 +329,9 @@ void sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const 
                            double *F, double *area)
 {
   const double factor = 2.0 * (f->surface->dimension + 2) * t->friction;
-  for (int i = 0; i < f->list->n; i++) {
+  memset(F, 0, sizeof(double) * 3 * (size_t) f->list->n);
+  memset(area, 0, sizeof(double) * (size_t) f->list->n);
+  for EACH_NEAR(f, row, i) {
     const double V = film_is_wall(f, i) ? 0.0 : f->x4[4 * (size_t) i + 3], *G = rows->whole + 4 * (size_t) i + 1,
                  w = rows->surface[4 * (size_t) i + 3], *rubs = rows->turns + SD_SPH_SKIN_SUMS * (size_t) i + 16;
     for (int d = 0; d < 3; d++) {
@@ -344,7 +345,7 @@ void sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const 
 void sd_sph_dry_walls(const sd_sph_film *f, double sigma, const sd_sph_film_rows *rows, const double *k,
                       const double *P, double *F)
 {
-  for (int i = 0; i < f->list->n; i++) {
+  for EACH_NEAR(f, row, i) {
     const double *of = rows->sums + 8 * (size_t) i, *G = rows->whole + 4 * (size_t) i + 1;
     if (film_is_wall(f, i) || !(of[4] > 0.0)) continue;
     const double push = 2.0 * f->x4[4 * (size_t) i + 3] * fmax(0.0, fmin(P[i], sigma * k[i]));

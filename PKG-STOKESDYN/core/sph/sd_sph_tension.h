@@ -74,9 +74,13 @@ typedef struct {
   const double *x4;
   /* [all+1] 1: of a wall; NULL: there are no walls */
   const int *wall;
-  /* [all] 1: the support is whole, but for walls; and of those [n] 1: nobody with w > 0 is in reach, so that
-   * loops may pass over it. NULL: not known of any */
-  const char *inside, *deep;
+  /* [all] 1: the support is whole, but for walls. NULL: not known of any */
+  const char *inside;
+  /* [count] those of this rank that somebody with w > 0 may have in reach, in their order. The others are
+   * deep: loops pass over them. Their curvatures, forces and areas are 0, their other rows below are left
+   * as they are. NULL: all n are near */
+  const int *near;
+  int count;
 } sd_sph_film;
 #define SD_SPH_WHOLE 0.95
 
@@ -100,8 +104,8 @@ typedef struct {
   double *turns;
 } sd_sph_film_rows;
 
-/* Fills sums, own V W(0) contained; that alone of those that are deep and, without walls, of those inside,
- * most of which no surface reaches. */
+/* Fills sums, own V W(0) contained; without walls that alone of those inside, most of which no surface
+ * reaches. */
 void sd_sph_film_sums(const sd_sph_film *f, const sd_sph_film_rows *rows);
 
 /* c of wall particles, 0 of others: wet [n]. */
@@ -111,12 +115,12 @@ void sd_sph_film_wetness(const sd_sph_film *f, const sd_sph_film_rows *rows, dou
  * contact [4 (all+1)]. */
 void sd_sph_film_wet_walls(const sd_sph_film *f, const double *contact, const sd_sph_film_rows *rows);
 
-/* Fills whole, at_wall and, but for ghosts, surface. */
+/* Fills whole, at_wall and, but for ghosts, surface, which is 0 before. */
 void sd_sph_film_normals(const sd_sph_film *f, const sd_sph_film_rows *rows);
 
-/* Pairs of particles of the surface: those of i are first[i] .. first[i+1] - 1, with w_b V_b W; and who shows
- * others a normal, as particle of the surface or of a wall. Room for first [n+1] and shows [all+1], and for
- * sd_sph_skin_size neighbours and weights. */
+/* Pairs of particles of the surface: those of the k-th that is not deep are first[k] .. first[k+1] - 1, with
+ * w_b V_b W; and who shows others a normal, as particle of the surface or of a wall. Room for first [n+1] and
+ * shows [all+1], and for sd_sph_skin_size neighbours and weights. */
 typedef struct {
   size_t *first;
   char *shows;
@@ -134,7 +138,8 @@ void sd_sph_film_curvatures(const sd_sph_film *f, const sd_sph_film_rows *rows, 
 void sd_sph_film_means(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin,
                        const double *k, double *mean);
 
-/* ks [n] of kappa, <kappa> and <<kappa>>. */
+/* ks [n] of kappa, <kappa> and <<kappa>>, in the place of once or twice: those that are far from the surface keep
+ * their 0. */
 void sd_sph_film_sharpen(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *kappa,
                          const double *once, const double *twice, double *ks);
 

@@ -30,7 +30,6 @@ INLINE meeting meets(const sd_sph_film *f, scales c, row4 xi, const int *j, int 
   return m;
 }
 
-#define IS_DEEP(f, i) ((f)->deep && (f)->deep[i])
 /* Of those whose support is whole the sums are asked for only where the surface is in reach: inwards. Where there are
  * walls, sums say first who is beside one. */
 INLINE int sums_wait(const sd_sph_film *f, int i)
@@ -45,12 +44,12 @@ INLINE int sums_wait(const sd_sph_film *f, int i)
 INLINE void film_sums(const sd_sph_film *f, double *sums, sd_sph_kernel kernel, int walls)
 {
   const scales c = scales_of(f);
-  for (int i = 0; i < f->list->n; i++) {
+  for EACH_NEAR(f, row, i) {
     const row4 xi = load4(f->x4 + 4 * (size_t) i);
     vec sum[8];
     for (int k = 0; k < 8; k++) sum[k] = all(0.0);
     for EACH_PAIR(f, i) {
-      if (IS_DEEP(f, i) || (!walls && sums_wait(f, i))) break;
+      if (!walls && sums_wait(f, i)) break;
       const int *j = NEXT(f, i);
       const meeting m = meets(f, c, xi, j, 1, kernel);
       vec W = m.W, g = m.g;
@@ -74,7 +73,7 @@ INLINE void film_wet_walls(const sd_sph_film *f, const double *contact, const sd
                            sd_sph_kernel kernel)
 {
   const scales c = scales_of(f);
-  for (int i = 0; i < f->list->n; i++) {
+  for EACH_NEAR(f, row, i) {
     if (f->wall[i] || !(rows->sums[8 * (size_t) i + 4] > 0.0)) continue;
     const row4 xi = load4(f->x4 + 4 * (size_t) i);
     vec sum[8];
@@ -133,10 +132,10 @@ INLINE void film_turns(const sd_sph_film *f, const sd_sph_film_rows *rows, const
   const scales c = scales_of(f);
   const vec zero = all(0.0);
   size_t last = 0;
-  for (int i = 0; i < f->list->n; i++) {
+  for EACH_NEAR(f, row, i) {
     const row4 xi = load4(f->x4 + 4 * (size_t) i), vi = load4(v4 + 4 * (size_t) i);
     const row4 ni = load4(surface + 4 * (size_t) i);
-    skin->first[i] = last;
+    skin->first[row] = last;
     if (!(ni[3] > 0.0)) continue;
     const row4 shown = at_wall ? load4(at_wall + 8 * (size_t) i) : (row4){0};
     const row4 line = at_wall ? load4(at_wall + 8 * (size_t) i + 4) : (row4){0};
@@ -168,7 +167,7 @@ INLINE void film_turns(const sd_sph_film *f, const sd_sph_film_rows *rows, const
     for (int part = 0; part < SD_SPH_SKIN_SUMS; part += 4)
       store4(rows->turns + SD_SPH_SKIN_SUMS * (size_t) i + part, over_lanes(sum + part));
   }
-  skin->first[f->list->n] = last;
+  skin->first[NEAR_COUNT(f)] = last;
 }
 
 INLINE double weighed(const sd_sph_skin *skin, size_t from, size_t to, const double *k)
@@ -184,44 +183,33 @@ INLINE double weighed(const sd_sph_skin *skin, size_t from, size_t to, const dou
 
 static void film_means(const sd_sph_film *f, const sd_sph_skin *skin, const double *k, double *sums)
 {
-  for (int i = 0; i < f->list->n; i++) sums[i] = weighed(skin, skin->first[i], skin->first[i + 1], k);
+  for EACH_NEAR(f, row, i) sums[i] = weighed(skin, skin->first[row], skin->first[row + 1], k);
 }
 
-/* G of a particle whose sums have waited */
-INLINE void late_gradient(const sd_sph_film *f, scales c, row4 xi, int i, double *G, sd_sph_kernel kernel)
-{
-  vec sum[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
-  for EACH_PAIR(f, i) {
-    const meeting m = meets(f, c, xi, NEXT(f, i), 1, kernel);
-    for (int d = 0; d < 3; d++) sum[d] += m.g * m.d[d];
-  }
-  const row4 whole = over_lanes(sum);
-  for (int d = 0; d < 3; d++) G[d] = whole[d];
-}
-
-INLINE void film_inwards(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin, const double *k,
-                         double *mean, sd_sph_kernel kernel)
+/* Few of all neighbours show a curvature, but to pick them first is slower than to sum up zeros; with G of those whose
+ * sums have waited. */
+INLINE void film_inwards(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *k, double *mean,
+                         sd_sph_kernel kernel)
 {
   const double *surface = rows->surface;
   const scales c = scales_of(f);
   const vec zero = all(0.0);
-  int *seen = skin->neighbor + skin->first[f->list->n];
-  for (int i = 0; i < f->list->n; i++) {
+  for EACH_NEAR(f, row, i) {
     if (surface[4 * (size_t) i + 3] != 0.0) continue;
     const row4 xi = load4(f->x4 + 4 * (size_t) i);
-    const int count = IS_DEEP(f, i) ? 0 : skin_of(f, skin->shows, i, seen);
-    if (count && sums_wait(f, i)) late_gradient(f, c, xi, i, rows->whole + 4 * (size_t) i + 1, kernel);
-    vec sum = zero, weight = zero;
-    for (int at = 0; at < count; at += LANES) {
-      const int *j = seen + at;
-      const vec w = larger((vec) LANEWISE(WEIGHT_OF, surface), zero);
-      const vec W = meets(f, c, xi, j, 0, kernel).W * w;
-      weight += W;
-      sum += W * (vec) LANEWISE(VALUE_OF, k);
+    vec sum[4] = {zero, zero, zero, zero}, G[4] = {zero, zero, zero, zero};
+    for EACH_PAIR(f, i) {
+      const int *j = NEXT(f, i);
+      const meeting m = meets(f, c, xi, j, 1, kernel);
+      const vec W = m.W * larger((vec) LANEWISE(WEIGHT_OF, surface), zero);
+      sum[0] += W;
+      sum[1] += W * (vec) LANEWISE(VALUE_OF, k);
+      for (int d = 0; d < 3; d++) G[1 + d] += m.g * m.d[d];
     }
-    const double around = sum_of(weight);
-    rows->turns[SD_SPH_SKIN_SUMS * (size_t) i + 15] = around;
-    mean[i] = around > 1e-9 ? sum_of(sum) / around : 0.0;
+    if (sums_wait(f, i)) store4(rows->whole + 4 * (size_t) i, over_lanes(G));
+    const row4 around = over_lanes(sum);
+    rows->turns[SD_SPH_SKIN_SUMS * (size_t) i + 15] = around[0];
+    mean[i] = around[0] > 1e-9 ? around[1] / around[0] : 0.0;
   }
 }
 
@@ -257,10 +245,9 @@ static void all_turns(const sd_sph_film *f, const sd_sph_film_rows *rows, const 
   BY_KERNEL(f, film_turns, rows, v4, skin);
 }
 
-static void all_inwards(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin, const double *k,
-                        double *mean)
+static void all_inwards(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *k, double *mean)
 {
-  BY_KERNEL(f, film_inwards, rows, skin, k, mean);
+  BY_KERNEL(f, film_inwards, rows, k, mean);
 }
 
 const sd_sph_film_loops SD_KERNELS(sd_sph_film_loops) = {all_sums, all_wet_walls, all_turns, film_means, all_inwards};

@@ -77,7 +77,7 @@ static inline void find_neighbours(drop *s, int walls)
   }
   for (int d = 0; d < 3; d++) s->x4[4 * s->n + d] = 1e10;
   s->list = (sd_sph_both){s->n, s->neighbor, s->own, s->count};
-  s->film = (sd_sph_film){&s->plane, &s->list, s->n, s->x4, walls ? s->wall : NULL, NULL, NULL};
+  s->film = (sd_sph_film){&s->plane, &s->list, s->n, s->x4, walls ? s->wall : NULL, NULL, NULL, 0};
   s->rows = (sd_sph_film_rows){s->sums,    walls ? s->beside : NULL,  s->whole,
                                s->surface, walls ? s->at_wall : NULL, s->turns};
 }

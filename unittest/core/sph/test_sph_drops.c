@@ -67,7 +67,7 @@ static void drops_are_those_of_all_pairs(void **state)
     for (int i = 0; i < (dimension == 3 ? 350 : 150); i++)
       add(s, uniform(&seed, -3.0, 3.0), uniform(&seed, -3.0, 3.0), dimension == 3 ? uniform(&seed, -0.6, 0.6) : 0.0,
           0.01, i % 50 == 7);
-    s->film = (sd_sph_film){&s->plane, NULL, s->n, s->x4, s->wall, NULL, NULL};
+    s->film = (sd_sph_film){&s->plane, NULL, s->n, s->x4, s->wall, NULL, NULL, 0};
     find_drops(s, parent);
     for (int i = 0; i < s->n; i++) name[i] = i;
     for (int changed = 1; changed;) {

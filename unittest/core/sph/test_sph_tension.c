@@ -140,7 +140,8 @@ static void means_keep_a_uniform_curvature(void **state)
 static void the_deep_is_out_of_reach_and_bears_nothing(void **state)
 {
   (void) state;
-  static char inside[MOST], marked[MOST], grid[SD_SPH_DEEP_CELLS(MOST)], deep[MOST];
+  static char inside[MOST], marked[MOST], grid[SD_SPH_DEEP_CELLS(MOST)];
+  static int near[MOST];
   static double F[3 * MOST], area[MOST];
   drop *s = begin(2, 0.12);
   disk(s, 1.5, 0.06, 0.3, -7.0);
@@ -150,19 +151,78 @@ static void the_deep_is_out_of_reach_and_bears_nothing(void **state)
   memcpy(F, s->F, sizeof(F));
   memcpy(area, s->area, sizeof(area));
   for (int i = 0; i < s->n; i++) marked[i] = !(inside[i] = !(s->surface[4 * i + 3] > 0.0));
-  sd_sph_find_deep(s->n, s->n, s->x4, marked, 0.24, grid, deep);
-  int found = 0;
-  for (int i = 0; i < s->n; i++) {
-    found += deep[i];
-    for (int j = 0; j < s->n && deep[i]; j++) assert_true(!marked[j] || distance(s, i, j) > 0.24);
+  const int count = sd_sph_find_near(s->n, s->n, s->x4, marked, 0.24, grid, near);
+  for (int i = 0, k = 0; i < s->n; i++) {
+    if (k < count && near[k] == i) {
+      k++;
+      continue;
+    }
+    for (int j = 0; j < s->n; j++) assert_true(!marked[j] || distance(s, i, j) > 0.24);
   }
-  assert_true(found > s->n / 5);
+  assert_true(count < 2 * s->n / 3);
   s->film.inside = inside;
-  s->film.deep = deep;
+  s->film.near = near;
+  s->film.count = count;
+  for (int i = 0; i < s->n; i++) s->sums[8 * i] = s->whole[4 * i] = s->turns[SD_SPH_SKIN_SUMS * i + 15] = NAN;
   look(s, 0.0);
   pull(s, 2.5, 0.1);
   for (int i = 0; i < s->n; i++) CHECK_NEAR(s->area[i], area[i], 1e-14);
   for (int i = 0; i < 3 * s->n; i++) CHECK_NEAR(s->F[i], F[i], 1e-14);
+}
+
+/* The topmost layer of a lattice is a plane, and below it there are some in reach all the same; few particles have room
+ * for their cells too. */
+static void a_plane_has_those_below_it_near(void **state)
+{
+  (void) state;
+  static char marked[MOST], grid[SD_SPH_DEEP_CELLS(MOST)];
+  static int near[MOST];
+  for (int high = 1; high <= 12; high += 11) {
+    drop *s = begin(3, 0.2);
+    for (int k = 0; k < 16 * high; k++)
+      add(s, 0.1 * (k % 4), 0.1 * (k / 4 % 4), -0.1 * (double) (k / 16), 1e-3, 0);
+    memset(marked, 0, sizeof(marked));
+    memset(marked, 1, 16);
+    const int count = sd_sph_find_near(s->n, s->n, s->x4, marked, 0.25, grid, near);
+    assert_true(count >= (high == 1 ? 16 : 48) && count <= 16 * 8);
+    for (int k = 0; k < count; k++) assert_true(near[k] == k);
+  }
+}
+
+/* A place that is no number or infinite is near nobody and has nobody near it; nothing outside the grid is written. */
+static void a_place_that_is_no_number_is_near_nobody(void **state)
+{
+  (void) state;
+  static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL};
+  for (int k = 0; k < 3; k++)
+    for (int d = 0; d < 3; d++) {
+      double x4[16] = {0};
+      char marked[4] = {1, 1, 0, 0}, grid[SD_SPH_DEEP_CELLS(4) + 256], *cells = grid + 128;
+      int near[4];
+      memset(grid, 76, sizeof(grid));
+      x4[d] = bad[k];
+      x4[8] = 0.9;
+      x4[12] = 40.0;
+      assert_int_equal(sd_sph_find_near(4, 4, x4, marked, 1.0, cells, near), 2);
+      assert_true(near[0] == 1 && near[1] == 2);
+      for (int c = 0; c < 128; c++) assert_true(grid[c] == 76 && cells[SD_SPH_DEEP_CELLS(4) + (size_t) c] == 76);
+    }
+}
+
+/* The highest one is a rounding below three sides above the lowest: two cells behind its own, which is the fifth of
+ * seven, are the last. */
+static void a_place_that_rounds_up_stays_in_its_cell(void **state)
+{
+  (void) state;
+  const double side = 0.5 * (1.0 + 1e-9);
+  char marked[2] = {1, 1}, grid[SD_SPH_DEEP_CELLS(2)];
+  double x4[8] = {0};
+  int near[2];
+  x4[6] = 3.0 * side;
+  while (x4[6] / side >= 3.0) x4[6] = nextafter(x4[6], 0.0);
+  memset(grid, 76, sizeof(grid));
+  assert_int_equal(sd_sph_find_near(2, 2, x4, marked, 1.0, grid, near), 2);
+  assert_true(grid[6] == 1 && grid[7] == 76);
 }
 
 /* Its mean is its own, and nothing is read that nobody has written. */
@@ -386,6 +446,9 @@ int main(void)
       cmocka_unit_test(means_are_sums_over_the_surface),
       cmocka_unit_test(a_lone_particle_has_its_own_curvature),
       cmocka_unit_test(the_deep_is_out_of_reach_and_bears_nothing),
+      cmocka_unit_test(a_plane_has_those_below_it_near),
+      cmocka_unit_test(a_place_that_is_no_number_is_near_nobody),
+      cmocka_unit_test(a_place_that_rounds_up_stays_in_its_cell),
       cmocka_unit_test(a_uniform_curvature_pushes_as_a_pressure),
       cmocka_unit_test(friction_of_the_surface_keeps_momentum_and_its_moment_and_takes_energy),
       cmocka_unit_test(a_wedge_with_its_contact_angle_is_plane),
