@@ -93,6 +93,28 @@ def test_run_in_pieces_is_one_run(tmp_path):
                 assert np.abs(other[n] - ends[0][n]).max() <= limit * scale, n
 
 
+def lasting(*parts):
+    """vx - RATE y, by IDs, of particles that are at random places and drift upwards"""
+    lmp = start()
+    try:
+        scene = SCENE.format(**dict(VISCOUS, drift=1)).replace(
+            "mass 1 1", "displace_atoms all random 0.2 0.4 0 871 units box\nmass 1 1")
+        run(lmp, scene + "\n".join(parts))
+        return by_id(lmp, "v", 3)[:, 0] - RATE * by_id(lmp, "x", 3)[:, 1]
+    finally:
+        lmp.close()
+
+
+def test_before_a_run_of_no_steps_those_outside_are_put_back_by_a_last_step():
+    """What the page says of LAMMPS: at run 0 those that have left the box come back without their change of velocity,
+    RATE H; a last step that looks for neighbours has left nobody outside."""
+    unbroken = lasting("run 61")
+    lost = np.abs(lasting("run 60", "run 0", "run 1") - unbroken)
+    assert 1 <= (lost > 0.9 * RATE * H).sum() <= 10
+    kept = lasting("run 60", "neigh_modify check no", "run 1", "run 0")
+    assert np.abs(kept - unbroken).max() < 1e-4
+
+
 def test_fix_sph_of_lammps_cannot():
     """It extrapolates velocities before LAMMPS shifts those that change sides."""
     text = message(SCENE.format(**dict(VISCOUS, integrator="sph")) + "run 1")
