@@ -9,7 +9,9 @@
 #include "compute.h"
 #include "fix.h"
 #include "force.h"
+#include "group.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "pair.h"
 #include "update.h"
 
@@ -75,6 +77,20 @@ bool runs_back(const Guest &guest, std::string &says)
 {
   says = text(guest.lmp->update->dt);
   return guest.lmp->update->dt < 0.0;
+}
+
+bool leaves_out(const Guest &guest, std::string &says)
+{
+  const int include = guest.lmp->neighbor->includegroup;
+  const int bit = guest.lmp->group->bitmask[include], *mask = guest.lmp->atom->mask;
+  const tagint first = first_atom(guest.lmp, [&](int i) { return guest.ours(i) && !(mask[i] & bit); });
+  says = std::string("include ") + guest.lmp->group->names[include] + ", which leaves out atom " + std::to_string(first);
+  return include && first;
+}
+
+bool has_bath(const Guest &guest, std::string & /*says*/)
+{
+  return guest.fix->setmask() & FixConst::POST_FORCE;
 }
 
 // --- who is there --------------------------------------------------------------------------------

@@ -88,6 +88,13 @@ LAMMPS_NS::tagint first_moved(LAMMPS_NS::LAMMPS *lmp, const std::string &styles,
 /* Is the time step below 0? says: what it is */
 bool runs_back(const Guest &guest, std::string &says);
 
+/* Does neigh_modify include leave out one of ours? LAMMPS does not set the forces of that one to 0 in a step.
+ * says: the setting, and the lowest ID */
+bool leaves_out(const Guest &guest, std::string &says);
+
+/* Has fix rigid its keyword langevin? Only then it has something to do after forces. */
+bool has_bath(const Guest &guest, std::string &says);
+
 /* What this pair or bond style would write into data files, as far as it acts on atoms of ours:
  * lines of numbers, of a pair style i j and the coefficients of these types, of a bond style the
  * type and its coefficients; empty: it writes none. On all ranks together. */

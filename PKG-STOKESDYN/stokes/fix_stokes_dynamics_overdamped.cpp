@@ -176,7 +176,7 @@ void FixStokesDynamicsOverdamped::set_up()
   Hydrodynamics &hydro = hydrodynamics();
   hydro.begin();
   find_drives(hydro);
-  if (noise.on()) noise.warn_of_repeats(last.step);
+  noise.begin(last.step);
   const bool same_run = goes_on(hydro);
   if (!same_run || !causes_stand(hydro)) {
     before.clear();
@@ -188,6 +188,7 @@ void FixStokesDynamicsOverdamped::set_up()
   steps.rest();
   growth = {};
   find_velocities(hydro);
+  drives.note_start();
   if (!announced) announce();
   if (adapt.every && !same_run) end_of_step();
 }
@@ -300,6 +301,7 @@ void FixStokesDynamicsOverdamped::initial_integrate(int /*vflag*/)
 /* Where those of fix move go is known by now, in whatever order the two fixes stand. */
 void FixStokesDynamicsOverdamped::post_integrate()
 {
+  if (update->ntimestep == update->firststep + 1) drives.check_moved();
   if (scheme == MIDPOINT) advance();
   steps.follow_moved(hydrodynamics());
 }
@@ -314,6 +316,7 @@ void FixStokesDynamicsOverdamped::advance()
   Hydrodynamics &hydro = hydrodynamics();
   hydro.check_prepared();
   steps.rest();
+  if (noise.on()) noise.warn_of_repeats();
   if (scheme != MIDPOINT && !warned_growth) watch();
   if (scheme == MIDPOINT) {
     if (noise.on())

@@ -6,9 +6,12 @@
 #include "ranks.h"
 
 #include "atom.h"
+#include "force.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 using namespace LAMMPS_NS;
 
@@ -72,6 +75,33 @@ void Drives::check_loads(const Hydrodynamics &hydro) const
       voice.at_step().fail_one("the force or torque on atom " + std::to_string(atom->tag[i]) +
                                " is not a finite number: are two atoms at one point, or has the run blown up?");
   }
+}
+
+void Drives::note_start()
+{
+  at_start.clear();
+  if (moves_any() && atom->nlocal > 0) at_start.assign(atom->v[0], atom->v[0] + 3 * (size_t) atom->nlocal);
+}
+
+/* fix move cannot be asked for its NULL, but in such a direction v changes by half a step of f/m. What no force pushes
+ * as the run begins is not seen. */
+void Drives::check_moved()
+{
+  if (!moves_any()) return;
+  const bool known = at_start.size() == 3 * (size_t) atom->nlocal;
+  for (int d = 0; d < 3; d++) {
+    const tagint first = first_atom(lmp, [this, d, known](int i) {
+      if (!known || !is_moved(i)) return false;
+      const double m = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]], v = at_start[3 * (size_t) i + d];
+      const double kick = 0.5 * update->dt * force->ftm2v * atom->f[i][d] / m;
+      return std::isfinite(kick) && fabs(kick) > 1e-10 * fabs(v) && fabs(atom->v[i][d] - v - kick) <= 1e-5 * fabs(kick);
+    });
+    if (first)
+      voice.of("keyword held").fail(std::string("fix move leaves atom ") + std::to_string(first) + " free along " +
+                                    "xyz"[d] + " (NULL), where force and mass then move it as if there were no fluid: "
+                                    "give a velocity there, which may be 0");
+  }
+  at_start.clear();
 }
 
 /* Those that fix move moves have the velocity that it gave them, others that are held have none. */

@@ -11,6 +11,7 @@
 #include "domain.h"
 #include "force.h"
 #include "neighbor.h"
+#include "universe.h"
 #include "update.h"
 
 #include <algorithm>
@@ -176,7 +177,8 @@ void Noise::announce(const Hydrodynamics &hydro, double smallest, double drag) c
              "; root of the mobility by " + root + "; a step moves the smallest sphere by " +
              text(radii) + " of its radius" + of_skin + "; " +
              (midpoint ? "v holds the noise of a step" : "v has no noise") +
-             ", and temperatures and pressures from v mean nothing");
+             ", and temperatures and pressures from v mean nothing" +
+             (universe->nworlds > 1 ? "; partitions with one seed draw the same numbers" : ""));
   if (radii > 0.1)
     voice.warn("keyword temperature: a step moves the smallest sphere by " + text(radii) +
                " of its radius: use a shorter time step");
@@ -186,11 +188,18 @@ void Noise::announce(const Hydrodynamics &hydro, double smallest, double drag) c
                "skin");
 }
 
-void Noise::warn_of_repeats(double last_step)
+void Noise::begin(double last_step)
 {
-  if (told_of_repeats || last_step <= (double) update->ntimestep) return;
+  if (std::isnan(drawn)) drawn = last_step;
+}
+
+void Noise::warn_of_repeats()
+{
+  const double before = drawn, step = (double) update->ntimestep;
+  drawn = std::max(before, step);
+  if (told_of_repeats || step > before) return;
   told_of_repeats = true;
-  voice.at_step().warn("keyword temperature: noise of steps up to " + text(last_step) + " was drawn with this seed "
+  voice.at_step().warn("keyword temperature: noise of steps up to " + text(before) + " was drawn with this seed "
                        "before reset_timestep, and the same random numbers come again: give the fix anew with "
                        "another seed");
 }

@@ -17,6 +17,7 @@
 #include "sd_noise_spheres.h"
 #include "sd_random.h"
 
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -66,8 +67,10 @@ class Noise : protected LAMMPS_NS::Pointers {
 
   /* Once: what has been drawn, and how far it moves the smallest sphere, 1/drag its mobility */
   void announce(const Hydrodynamics &hydro, double smallest, double drag) const;
-  /* Once: does the run begin before the step of which random numbers were drawn last? */
-  void warn_of_repeats(double last_step);
+  /* last_step: for which numbers were drawn before this fix was given, as a restart file has it; below 0: none */
+  void begin(double last_step);
+  /* A step begins. Once: have its random numbers been drawn before? */
+  void warn_of_repeats();
   /* Of the last root: products with M (its near part, where the sum is split), e of sd_noise.h */
   const sd_noise_report &report() const { return last; }
 
@@ -87,6 +90,8 @@ class Noise : protected LAMMPS_NS::Pointers {
   std::vector<double> D, w, y, engine_F, engine_u;
   /* by a matrix in two parts (sd_mobility.h) */
   bool divided = false;
+  /* the last step for which numbers were drawn; NAN: no run has begun */
+  double drawn = NAN;
   /* noise is a slip; a part that should be positive was not, and the user knows */
   bool midpoint = false, told_of_whole = false, told_of_repeats = false;
 

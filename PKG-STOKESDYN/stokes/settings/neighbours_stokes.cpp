@@ -11,7 +11,6 @@
 #include "group.h"
 #include "output.h"
 #include "modify.h"
-#include "neighbor.h"
 #include "pair.h"
 
 #include "sd_linear.h"
@@ -123,12 +122,6 @@ static bool integrates(const Guest &guest, std::string &)
   return guest.fix->time_integrate && guest.style != "move";
 }
 
-/* fix rigid with its keyword langevin: only then it has something to do after forces */
-static bool has_bath(const Guest &guest, std::string &)
-{
-  return guest.fix->setmask() & FixConst::POST_FORCE;
-}
-
 static bool remaps_v(const Guest &guest, std::string &)
 {
   return DeformSettings::remap(guest.fix) == Domain::V_REMAP;
@@ -169,16 +162,6 @@ static bool is_asked_for(const Guest &guest, std::string &)
   if (strcmp(guest.compute->id, "thermo_press") != 0) return true;
   return guest.compute->invoked_vector >= 0 ||
       (guest.compute->invoked_scalar >= 0 && Compat::prints_custom_lines(guest.lmp));
-}
-
-/* neigh_modify include: of those that it leaves out LAMMPS does not set the forces to 0 in a step */
-static bool leaves_out(const Guest &guest, std::string &says)
-{
-  const int group = guest.lmp->neighbor->includegroup;
-  const int bit = guest.lmp->group->bitmask[group], *mask = guest.lmp->atom->mask;
-  const tagint first = first_atom(guest.lmp, [&](int i) { return guest.ours(i) && !(mask[i] & bit); });
-  says = std::string("include ") + guest.lmp->group->names[group] + ", which leaves out atom " + std::to_string(first);
-  return group && first;
 }
 
 /* Of atom styles that have shapes: compute property/atom tells them. */
@@ -288,7 +271,7 @@ const std::vector<Neighbour> stokes_neighbours = {
      "moves spheres by a drag of its own, and the fluid drags them as well: take it out and use "
      "fix stokes_dynamics/overdamped, with temperature for the noise, or take out the pair style"},
     {N::PAIR, "lubricate* brownian*", FORCE, N::ERROR,
-     "has a drag of its own, and the fluid drags the spheres as well: take out one of the two; "
+     "has a drag or noise of its own, and the fluid drags the spheres as well: take out one of the two; "
      "films are the keyword lubrication, noise is the keyword temperature of fix "
      "stokes_dynamics/overdamped"},
     {N::PAIR, "lubricate* brownian*", OVERDAMPED, N::ERROR,
@@ -314,7 +297,8 @@ const std::vector<Neighbour> stokes_neighbours = {
     {N::FIX, "shake rattle", OVERDAMPED, N::ERROR,
      "finds the forces of its bonds from masses and velocities, which motion without inertia has not "
      "got: use stiff bonds (bond_style harmonic), or rigid_clumps yes for spheres that stay together"},
-    {N::FIX, "nve nve/limit nvt npt nph", FORCE | TURNING, N::WARNING,
+    {N::FIX, "nve nve/limit nvt npt nph nvk nvt/sllod nvt/uef npt/uef npt/cauchy nphug msst bocs", FORCE | TURNING,
+     N::WARNING,
      "moves spheres but does not turn them, so that the torques of the fluid do nothing: use fix "
      "nve/sphere or its like"},
     {N::FIX, "*/asphere*", FORCE | TURNING, N::WARNING,
@@ -333,9 +317,12 @@ const std::vector<Neighbour> stokes_neighbours = {
     {N::FIX, "flow/gauss", OVERDAMPED, N::WARNING,
      "takes the mean force away, and without inertia no flow is left then: give the flow by keyword fluid_velocity "
      "of the pair style", nullptr, FREE},
-    {N::FIX, "wall/reflect*", OVERDAMPED | MIDWAY, N::ERROR,
+    {N::FIX, "wall/reflect* wall/piston", OVERDAMPED | MIDWAY, N::ERROR,
      "stands before fix stokes_dynamics/overdamped in the input, whose step it then does not see, so that "
      "spheres stay behind its wall until the next one: define it behind", stands_before_motion},
+    {N::FIX, "recenter", OVERDAMPED | MIDWAY, N::WARNING,
+     "does nothing: scheme midpoint makes its step from where spheres were before it: take it out and centre what "
+     "has been written, or use scheme ab2", nullptr, FREE},
     {N::FIX, "addtorque", TURNING, N::WARNING,
      "pushes the atoms of its group, which turns the group and not the spheres, and does nothing "
      "to a single sphere: a torque on spheres is the keyword torque of fix "
@@ -344,10 +331,13 @@ const std::vector<Neighbour> stokes_neighbours = {
     {N::FIX, "temp/* momentum* oneway heat ehex viscosity thermal/conductivity wall/flow", OVERDAMPED, N::WARNING,
      "changes velocities, which without inertia follow from forces and flow: what is printed changes, but not the "
      "path of the spheres: take it out", nullptr, FREE},
-    {N::FIX, "nvt* npt* nvk temp/*", FORCE, N::WARNING,
+    {N::FIX, "nvt* npt* nvk temp/* rigid/nvt* rigid/npt* bocs hmc", FORCE, N::WARNING,
      "changes velocities to hold a temperature, as a drag or a push beside that of the fluid, so that spheres neither "
-     "settle nor flow as the fluid has it: use fix nve/sphere; for noise fix stokes_dynamics/overdamped with "
-     "temperature"},
+     "settle nor flow as the fluid has it: use fix nve/sphere, or rigid/small for rigid clumps; for noise fix "
+     "stokes_dynamics/overdamped with temperature"},
+    {N::FIX, "momentum* viscosity thermal/conductivity heat ehex", FORCE, N::WARNING,
+     "changes velocities of spheres beside the forces on them, of which the fluid feels nothing, so that spheres "
+     "neither settle nor flow as the fluid has it: take it out"},
     {N::FIX, "damping/cundall", ADDED, N::WARNING,
      "makes forces larger that oppose a velocity, and so also the drag of the fluid: use add_force no, and fix "
      "stokes_dynamics behind it in the input"},

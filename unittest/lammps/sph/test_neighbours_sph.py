@@ -168,9 +168,11 @@ def test_every_row_has_a_case(tmp_path):
         ("FIX wall/reflect*", "LANGEVIN", "WARNING"), ("FIX freeze setforce planeforce lineforce", "0", "WARNING"),
         ("FIX rigid* poems shake rattle", "DRAGS", "WARNING"),
         ("FIX viscous langevin* gld gle gjf ffl ttm* nve/dotc/langevin electron/stopping* brownian* lb/*", "DRAGS",
-         "WARNING"), ("FIX nvt* npt* nvk temp/* momentum*", "DRAGS", "WARNING"),
-        ("FIX damping/cundall", "DRAGS", "WARNING"), ("FIX srd", "DRAGS", "WARNING"),
-        ("COMMAND timestep", "0", "ERROR")]
+         "WARNING"), ("FIX rigid*", "DRAGS", "WARNING"),
+        ("PAIR lubricate lubricate/poly", "DRAGS", "WARNING"),
+        ("FIX nvt* npt* nvk temp/* rigid/nvt* rigid/npt* bocs hmc momentum* viscosity thermal/conductivity heat ehex",
+         "DRAGS", "WARNING"), ("FIX damping/cundall", "DRAGS", "WARNING"), ("FIX srd", "DRAGS", "WARNING"),
+        ("COMMAND neigh_modify", "DRAGS", "ERROR"), ("COMMAND timestep", "0", "ERROR")]
 
 
 def test_particles_at_rest_may_lose_their_own_kind(tmp_path):

@@ -363,17 +363,31 @@ def test_failed_solve_stops_all_ranks(tmp_path, words, text):
     assert ended.code != 0 and f"{PAIR}: step 0: algorithm" in ended.log and text in ended.log
 
 
+def in_partitions(tmp_path, lines):
+    """Two of one rank each"""
+    (tmp_path / "in").write_text("\n".join(lines) + "\n")
+    return subprocess.run([*mpirun(2), lmp_program(), "-partition", "2x1", "-in", "in", "-log", "log", "-nocite"],
+                          cwd=tmp_path, env=environment(), stdin=subprocess.DEVNULL, capture_output=True,
+                          timeout=PATIENCE)
+
+
 @pytest.mark.ranks(2)
 def test_a_partition_that_fails_has_the_error_in_its_log(tmp_path):
     """It ends all others by MPI_Abort, with which what is still in a buffer is lost."""
     lines = input_lines(three(), "cut_off_distance inf visc ${viscosity}", tmp_path / "data", box=BOX,
                         before_pair="variable viscosity world -1 1.3")
-    (tmp_path / "in").write_text("\n".join(lines + ["run 0"]) + "\n")
-    ended = subprocess.run([*mpirun(2), lmp_program(), "-partition", "2x1", "-in", "in", "-log", "log", "-nocite"],
-                           cwd=tmp_path, env=environment(), stdin=subprocess.DEVNULL, capture_output=True,
-                           timeout=PATIENCE)
-    assert ended.returncode != 0
+    assert in_partitions(tmp_path, lines + ["run 0"]).returncode != 0
     assert f"ERROR: {PAIR}: keyword visc" in (tmp_path / "log.0").read_text()
+
+
+@pytest.mark.ranks(2)
+def test_partitions_are_told_what_one_seed_draws(tmp_path):
+    lines = input_lines(three(), "cut_off_distance inf visc 1.3", tmp_path / "data", box=BOX, fix=False)
+    lines += ["fix move all stokes_dynamics/overdamped temperature 0.1 4711", "run 1"]
+    assert in_partitions(tmp_path, lines).returncode == 0
+    for each in ("log.0", "log.1"):
+        assert "partitions with one seed draw the same numbers" in (tmp_path / each).read_text()
+    assert "partitions with one seed" not in lmp(tmp_path, lines).log
 
 
 @pytest.mark.parametrize("words", ["cut_off_distance inf visc -1", "cut_off_distance inf visc 1.3 algorithm 3",

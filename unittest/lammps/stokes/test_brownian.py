@@ -476,6 +476,13 @@ def test_steps_that_come_again_have_the_same_numbers_and_are_warned_of(simulatio
     assert np.abs(moved[1] / moved[0] - 1).max() < 0.05 < np.abs(moved[2] / moved[0] - 1).min()
 
 
+def test_frames_of_a_rerun_draw_nothing_and_have_no_word(simulation, tmp_path):
+    sim = noise(simulation(Spheres(TRIO, A), INF, fix=False, dt=1e-3, log=tmp_path / "log"))
+    sim.commands(f"dump d all custom 1 {tmp_path}/frames id x y z").run(5)
+    sim.commands(f"undump d\nrerun {tmp_path}/frames dump x y z").run(5)
+    assert "was drawn with this seed" not in " ".join((tmp_path / "log").read_text().split())
+
+
 def test_a_temperature_that_follows_a_compute_is_that_of_the_step(simulation):
     """Whenever thermo output is written; the sphere in front goes fast, and the temperature with it."""
     ends = []

@@ -144,6 +144,10 @@ def test_others_are_held_from_now_on(simulation, keyword):
     (f"{FIX}\nfix m all move linear 1 0 0", "fix m of style move integrates spheres that fix"),
     (f"group some id 1\n{FIX} held some\nfix m all move linear 1 0 0",
      "fix m of style move integrates spheres that fix"),
+    (f"{PULL}\ngroup some id 1 3\nfix m some move linear 0 NULL 0.1\n{FIX} held some",
+     "keyword held: fix move leaves atom 1 free along y .NULL., where force and mass then move it"),
+    (f"{PULL}\ngroup some id 1 3\nvariable z equal 0.1*step*dt\nvariable w equal 0.1\n{FIX} held some\n"
+     "fix m some move variable NULL NULL v_z NULL NULL v_w", "fix move leaves atom 1 free along x"),
 ])
 def test_what_cannot_be_held_is_named(simulation, line, message):
     sim = simulation(Spheres(X, molecule=MOLECULE), f"cut_off_distance inf visc {ETA} rotation yes rigid_clumps yes",

@@ -72,10 +72,11 @@ def bonded(style, gamma):
 HOOKE = "gran/hooke/history 10 NULL {} NULL {} 0"
 GRAN = "PAIR gran/hooke gran/hooke/history gran/hertz/history"
 LANGEVIN = "FIX viscous langevin* gld gle gjf ffl ttm* nve/dotc/langevin electron/stopping*"
-TURNLESS = "FIX nve nve/limit nvt npt nph"
+TURNLESS = "FIX nve nve/limit nvt npt nph nvk nvt/sllod nvt/uef npt/uef npt/cauchy nphug msst bocs"
 HOLDING = "FIX setforce freeze planeforce lineforce aveforce flow/gauss"
 PRINTED = "FIX temp/* momentum* oneway heat ehex viscosity thermal/conductivity wall/flow"
-THERMOSTATS = "FIX nvt* npt* nvk temp/*"
+THERMOSTATS = "FIX nvt* npt* nvk temp/* rigid/nvt* rigid/npt* bocs hmc"
+EXCHANGE = "FIX momentum* viscosity thermal/conductivity heat ehex"
 PRESSURE = "COMPUTE pressure* stress/* centroid/stress/*"
 VANS = "hydro/vans 1 mesh 10 1 -9 fluid 1 1 gravity 0.1 0 -1 phi_max 0.6 area 100"
 BONDS = "\n".join(["bond_style harmonic", "bond_coeff 1 1 2.5"] + [f"create_bonds single/bond 1 {both}"
@@ -124,16 +125,21 @@ CASES = [
      "fix b of style aveforce stands before fix stokes_dynamics in the input"),
     ("FIX move", "OVERDAMPED", fixed("fix b GROUP move linear 0 0 1"), "fix b of style move integrates spheres"),
     ("FIX *", "OVERDAMPED", fixed("fix b GROUP nve/sphere"), "fix b of style nve/sphere integrates spheres"),
- 
-       ("FIX */asphere*", "FORCE | TURNING", fixed("fix b GROUP nve/asphere", "fix drag ours stokes_dynamics",
+    (TURNLESS, "FORCE | TURNING", fixed("fix d all deform 1 xy erate 0.1 remap v\nfix b GROUP nvt/sllod temp 1 1 1",
+                                        "fix drag ours stokes_dynamics", words=TURN, boundary="p p p",
+                                        before="velocity all create 1 77"),
+     "fix b of style nvt/sllod moves spheres but does not turn them"),
+    ("FIX */asphere*", "FORCE | TURNING", fixed("fix b GROUP nve/asphere", "fix drag ours stokes_dynamics",
                                                    words=TURN, atoms=ELLIPSOID, before=ROUND),
         "fix b of style nve/asphere turns spheres by"),
     ("FIX setforce freeze", "OVERDAMPED", fixed("fix b GROUP setforce 0 0 0"),
      "fix b of style setforce sets forces"),
     ("FIX planeforce lineforce", "OVERDAMPED", fixed("fix b GROUP planeforce 0 0 1"),
      "fix b of style planeforce takes away forces"),
-    ("FIX wall/reflect*", "OVERDAMPED | MIDWAY", fixed("fix b GROUP wall/reflect zlo -8", HALFWAY),
+    ("FIX wall/reflect* wall/piston", "OVERDAMPED | MIDWAY", fixed("fix b GROUP wall/reflect zlo -8", HALFWAY),
      "fix b of style wall/reflect stands before fix stokes_dynamics/overdamped"),
+    ("FIX recenter", "OVERDAMPED | MIDWAY", fixed("fix b GROUP recenter INIT INIT INIT", HALFWAY),
+     "fix b of style recenter does nothing: scheme midpoint makes its step from where"),
     ("COMMAND neigh_modify", "0", listed(OVERDAMPED),
      "neigh_modify has include others, which leaves out atom 1: its forces of all steps add up"),
     ("COMMAND neigh_modify", "0", listed(INERTIA), "neigh_modify has include others, which leaves out atom 1"),
@@ -148,6 +154,12 @@ CASES = [
      "fix b of style temp/berendsen changes"),
     (THERMOSTATS, "FORCE", fixed("fix b GROUP nvt/sphere temp 1 1 1", "fix drag ours stokes_dynamics"),
      "fix b of style nvt/sphere changes velocities to hold a temperature"),
+    (THERMOSTATS, "FORCE", fixed("fix drag ours stokes_dynamics\nfix b GROUP rigid/nvt single temp 1 1 1", ""),
+     "fix b of style rigid/nvt changes velocities to hold a temperature"),
+    (EXCHANGE, "FORCE", fixed("fix b GROUP momentum 1 linear 1 1 1", INERTIA),
+     "fix b of style momentum changes velocities of spheres beside the forces on them"),
+    (EXCHANGE, "FORCE", fixed("fix b GROUP viscosity 10 x z 4", INERTIA),
+     "fix b of style viscosity changes velocities of spheres beside"),
     (THERMOSTATS, "FORCE", fixed("fix b GROUP temp/rescale 1 1 1 0.1 1", INERTIA, before="velocity all create 1 77"),
      "fix b of style temp/rescale changes velocities to hold a temperature"),
     ("FIX damping/cundall", "ADDED", fixed("fix b GROUP damping/cundall 0.1 0.1", "fix move ours nve/sphere",
@@ -294,6 +306,7 @@ FINE = {
     "forces set behind the fix that adds the drag": scene() + INERTIA.splitlines() + ["fix b ours setforce 0 0 0"],
     "forces set where the pair style adds the drag": scene(f"{WORDS} add_force yes")
     + ["fix b ours setforce 0 0 0", "fix move ours nve/sphere"],
+    "spheres that are centred by the step of ab2": scene() + ["fix b ours recenter INIT INIT INIT", OVERDAMPED],
     "a wall that sees the step of midpoint": scene() + [HALFWAY, "fix b ours wall/reflect zlo -8"],
     "a wall before a step that it sees": scene() + ["fix b ours wall/reflect zlo -8", OVERDAMPED],
     "contacts damped before the fluid drags": scene(before=TODAY) + ["fix b ours damping/cundall 0.1 0.1"]
@@ -336,6 +349,25 @@ def test_gravity_that_only_fix_rigid_knows_has_no_word(simulation, tmp_path):
     _, warnings = said(simulation, tmp_path, scene(before=OVERLAP) + ["fix b all gravity 1 vector 0 0 -1 disable",
                                                                       OVERDAMPED])
     assert "gravity pulls" not in warnings
+
+
+def test_replicate_after_a_run_has_a_way_out(simulation, tmp_path):
+    lines = scene(boundary="p p p") + ["unfix move", "run 0", "pair_style none", "replicate 2 1 1"]
+    at = lines.index("unfix move")
+    lines[at:at] = [OVERDAMPED, "run 1"]
+    without = [line for line in lines if line != "pair_style none"]
+    assert "Cannot replicate with fixes that store" in said(simulation, tmp_path, without)[0]
+    lines += [f"pair_style stokes_dynamics {WORDS} group ours", "pair_coeff * *", OVERDAMPED]
+    assert said(simulation, tmp_path, lines)[0] == ""
+
+
+def test_who_looks_further_than_contacts_gets_a_list(simulation, tmp_path):
+    further = ["compute near all coord/atom cutoff 4.0", "compute most all reduce max c_near",
+               "thermo_style custom step c_most", OVERDAMPED]
+    assert "cutoff is longer than pairwise cutoff" in said(simulation, tmp_path, scene() + further)[0]
+    listed = "\n".join(scene()).replace("pair_style ", "pair_style hybrid/overlay zero 5.0 ").replace(
+        "pair_coeff * *", "pair_coeff * * zero\npair_coeff * * stokes_dynamics").splitlines()
+    assert said(simulation, tmp_path, listed + further)[0] == ""
 
 
 def test_a_warning_is_given_once(simulation, tmp_path):

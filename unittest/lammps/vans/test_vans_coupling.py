@@ -300,6 +300,9 @@ def test_water_that_moves_on_alone_is_not_too_far_apart(tmp_path):
     ("viscous 1e-9", "adds a drag to grains that the water drags as well", True, True),
     ("lb/fluid", "adds a drag to grains that the water drags as well", True, True),
     ("temp/berendsen 1 1 1", "changes velocities of grains, of which the water feels nothing", True, True),
+    ("viscosity 10 x z 4", "changes velocities of grains, of which the water feels nothing", True, True),
+    ("rigid single langevin 1 1 1 77", "has a drag of its own (keyword langevin) on grains", True, True),
+    ("rigid/nvt single temp 1 1 1", "changes velocities of grains, of which the water feels nothing", True, True),
     ("damping/cundall 0.1 0.1", "stands behind this fix in the input and makes forces larger", False, True)])
 def test_what_the_stream_does_not_go_with_is_told(tmp_path, style, says, before, behind):
     """In both orders of the input, and nothing where the fix has no grains."""
@@ -322,6 +325,25 @@ def test_a_second_fluid_is_told_and_a_way_back_refused(tmp_path, lines, error, s
     there(STYLES_OF_TODAY)
     done = run_lmp(tmp_path, bed_of_specks(1e-4, 10).replace("run 1", f"{lines}\nrun 0"))
     assert (done.returncode != 0) == error and says in " ".join(done.stdout.split())
+
+
+@pytest.mark.parametrize("pair, told", [("lubricate 1 1 1", True), ("lubricate 1 1 0", False)])
+def test_lubrication_with_a_drag_of_its_own_is_told(tmp_path, pair, told):
+    """flagfld 1: the pair style drags each grain as the water does; without it, it is lubrication alone."""
+    done = run_lmp(tmp_path, bed_of_specks(1e-4, 10).replace("newton off", "newton on").replace(
+        "run 1", f"pair_style {pair} 1.01e-4 2e-4\npair_coeff * *\nrun 0"))
+    assert done.returncode == 0, done.stdout[-1000:]
+    said = "pair_style lubricate has a drag of its own on each grain (flagfld 1)"
+    assert (said in " ".join(done.stdout.split())) == told
+
+
+@pytest.mark.parametrize("some, refused", [("1", True), ("1:1000", False)])
+def test_grains_whose_forces_would_add_up_are_refused(tmp_path, some, refused):
+    """LAMMPS sets the forces of others than those of neigh_modify include to 0 never again."""
+    done = run_lmp(tmp_path, bed_of_specks(1e-4, 10).replace(
+        "run 1", f"group some id {some}\natom_modify first some\nneigh_modify include some\nrun 2"))
+    assert (done.returncode != 0) == refused, done.stdout[-1000:]
+    assert ("neigh_modify has include some, which leaves out atom 2" in " ".join(done.stdout.split())) == refused
 
 
 RISES = "keyword gravity: no fix gives atom 1 a weight"
