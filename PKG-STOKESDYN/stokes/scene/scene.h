@@ -246,7 +246,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   const sd_mobility_engine *engine_of_all();
   sd_status choose(const sd_ewald_box &box, const sd_ewald_sizes &sizes);
   [[noreturn]] void no_grid(double count, const std::string &where, sd_status status) const;
-  void refuse_images(double images, double largest) const;
+  void refuse_images(double each, double images, double largest) const;
   /* Does the engine take each pair across a border on one side alone? */
   bool one_sided() const { return engine == &sd_mobility_ewald && !ewald.images.wall.sign; }
   void split_slab();

@@ -17,8 +17,9 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-// Of spheres near those of a rank: 10 GB.
-static const double MOST_IMAGES = 1e8;
+// Of spheres near those of a rank: 10 GB. Of one sphere, where a box is less than a tenth of it wide: of more, in cells
+// as large as the range, a placing takes seconds, and soon minutes.
+static const double MOST_IMAGES = 1e8, MOST_OF_EACH = 1e5;
 
 // Residual down to which a solve goes with products of floats: a hundred times their rounding, and more.
 static const double FLOATS_SOLVE_TO = 0.99e-4;
@@ -119,10 +120,10 @@ void Scene::no_grid(double count, const std::string &where, sd_status status) co
              " at far_field_tolerance " + text(settings.far_field_tolerance) + ": " + sd_status_string(status));
 }
 
-/* Of spheres of other ranks and images, near those of one */
-void Scene::refuse_images(double images, double largest) const
+/* Of spheres of other ranks and images, near those of one; each: images of one sphere */
+void Scene::refuse_images(double each, double images, double largest) const
 {
-  if (!(images < MOST_IMAGES))
+  if (!(images < MOST_IMAGES && each < MOST_OF_EACH))
     voice.fail("keyword far_field: the largest sphere, radius " + text(largest) +
                ", is so large for the periodic box that it would see " + text(images) +
                " images; is it in other units?");
@@ -144,9 +145,11 @@ bool Scene::split()
   if (status != SD_OK && must)
     no_grid(sizes.all.count, "in a box of " + text(box.edge[0]) + " x " + text(box.edge[1]) + " x " +
             text(box.edge[2]), status);
-  const double seen =
-      std::max(pow(ewald.reach, 3), second_level.count * pow(second_level.split.range, 3));
-  if (box.periodic) refuse_images(8.0 * sizes.all.count * seen / sd_ewald_volume(&box), sizes.all.largest);
+  const double near = pow(ewald.reach, 3), far = pow(second_level.split.range, 3);
+  const double a_volume = 8.0 / sd_ewald_volume(&box);
+  if (box.periodic)
+    refuse_images(a_volume * std::max(near, far), a_volume * sizes.all.count * std::max(near, second_level.count * far),
+                  sizes.all.largest);
   const double all_pairs =
       sizes.all.count * sizes.all.count * (settings.boundary.image_wall().sign ? SD_PAIR_AT_WALL : 1.0);
   return must || (status == SD_OK && sd_ewald_levels_cost(&ewald, &second_level) < all_pairs);
@@ -203,7 +206,8 @@ void Scene::split_slab()
             " x " + text(box.edge[(axis + 2) % 3]) + " and heights from " + text(all.lo) + " to " +
             text(all.hi), status);
   const double area = ewald.count > 0.0 ? sd_ewald_volume(&ewald.box) / ewald.box.edge[axis] : 1.0;
-  refuse_images(4.0 * sizes.count * ewald.reach * ewald.reach / area, sizes.largest);
+  const double each = 4.0 * ewald.reach * ewald.reach / area;
+  refuse_images(each, sizes.count * each, sizes.largest);
 }
 
 static std::string parameters_of(const sd_ewald &e)

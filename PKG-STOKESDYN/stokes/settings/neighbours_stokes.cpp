@@ -278,6 +278,12 @@ const std::vector<Neighbour> stokes_neighbours = {
      "has a drag or noise of its own, which would count twice: take it out; films are the keyword "
      "lubrication of the pair style, noise is the keyword temperature of fix "
      "stokes_dynamics/overdamped"},
+    {N::PAIR, "*dpd*", FORCE, N::WARNING,
+     "has friction between spheres (gamma {}) and may have noise, beside the fluid that is between them already: use "
+     "gamma 0; for noise that goes with the fluid fix stokes_dynamics/overdamped with temperature", damps},
+    {N::PAIR, "*dpd*", FORCE, N::WARNING,
+     "has friction or noise of its own between spheres, beside the fluid that is between them already: take it out; "
+     "for noise that goes with the fluid use fix stokes_dynamics/overdamped with temperature", may_damp},
     {N::FIX, "hydro/vans sph/grains lb/*", 0, N::ERROR,
      "drags spheres by a fluid of its own, and the fluid of pair_style stokes_dynamics drags them as "
      "well: take out one of the two, or give them different spheres"},

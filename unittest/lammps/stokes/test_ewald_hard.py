@@ -49,11 +49,12 @@ def test_a_sphere_larger_than_the_box(simulation):
     assert np.abs(two - np.tile(one, (2, 1))).max() < 1e-4 * np.abs(one).max()
 
 
-@pytest.mark.hard_case("far field: a sphere a thousand times larger than the box")
-def test_a_sphere_out_of_all_proportion(simulation):
+@pytest.mark.hard_case("far field: a sphere ten to a thousand times larger than the box")
+@pytest.mark.parametrize("a", [90, 9000])
+def test_a_sphere_out_of_all_proportion(simulation, a):
     with pytest.raises(LammpsError,
-                       match="far_field: the largest sphere, radius 9000, is so large for the periodic box"):
-        simulation(Spheres([(1, 2, 3)], 9000.0, (0.1, 0.2, 0.3)), ALL, **PERIODIC).run()
+                       match=f"far_field: the largest sphere, radius {a}, is so large for the periodic box"):
+        simulation(Spheres([(1, 2, 3)], a, (0.1, 0.2, 0.3)), ALL, **PERIODIC).run()
 
 
 @pytest.mark.hard_case("far field: nobody in the group")
