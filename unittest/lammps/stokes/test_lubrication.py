@@ -174,6 +174,20 @@ def test_a_doublet_along_an_axis_is_solved_to_rounding(simulation, axis):
         assert np.abs(answers[0] - answers[1]).max() < 1e-9 * np.abs(answers[1]).max()
 
 
+def test_a_push_from_far_away_carries_a_close_pair_along(simulation):
+    """It moves in the flow of a point force as one, which films do not see, nor the power of what its forces lack."""
+    x = np.array([(0, 0, 0), (-0.0264908952, -0.834536161, 1.70792138), (3000, 0, 1500)])
+    style = "cut_off_distance inf visc 1.3 multiblob 12 lubrication yes relative_tolerance 1e-10"
+    sim = simulation(Spheres(x, [1.3, 0.4, 0.4]), style, fix=False, box=[(-10.0, 3010.0)] * 3)
+    sim.commands(["group pushed id 3", FIX])
+    h = x[2] / np.linalg.norm(x[2])
+    for push in np.eye(3):
+        sim.command("fix push pushed addforce " + " ".join(map(str, push)))
+        sim.run(0).command("unfix push")
+        u = (push + push @ h * h) / (8 * np.pi * 1.3 * np.linalg.norm(x[2]))
+        assert np.abs(sim.v[:2] - u).max() < 2e-3 * np.abs(u).max()
+
+
 def test_radii_that_are_too_different_are_named(simulation):
     spheres = Spheres([(0, 0, 0), (90, 0, 0)], [0.5, 80.0])
     with pytest.raises(LammpsError,

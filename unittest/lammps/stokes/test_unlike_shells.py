@@ -8,6 +8,7 @@ import pytest
 
 from host import allowed
 from system import LammpsError, Spheres, dump_lines, from_restart, input_lines, lmp, read_dump
+from unlike import push
 
 MOVE = "fix move all stokes_dynamics/overdamped"
 P6 = 6 * np.pi
@@ -248,3 +249,35 @@ def test_a_clump_of_unlike_members_falls_as_one_of_finer_shells(simulation):
         found.append(np.concatenate([sim.v[0], sim.atom("omega")[0]]))
     size = np.linalg.norm(found[2])
     assert np.linalg.norm(found[0] - found[2]) < 2e-3 * size
+
+
+def resistance(simulation, tmp_path, x, a, words, **options):
+    """[6n, 6n]: forces and torques for velocities and spins, by one load after the other"""
+    n, path = len(a), os.path.join(str(tmp_path), "moved")
+    loads = np.eye(6 * n).reshape(6 * n, n, 6)
+    sim = simulation(Spheres(x, a), f"cut_off_distance inf visc 1 multiblob 12 relative_tolerance 1e-11 {words}",
+                     fix=False, dt=1e-12, **options)
+    push(sim, lambda step: loads[min(step, 6 * n - 1)])
+    sim.commands([MOVE] + dump_lines(path, columns="vx vy vz omegax omegay omegaz")).run(6 * n - 1)
+    sim.command("undump out")
+    return np.linalg.inv(np.array([frame.ravel() for _, frame in read_dump(path)]).T)
+
+
+def test_films_in_a_slit_are_those_of_lone_pairs_and_of_each_wall(simulation, tmp_path):
+    """What films add to the resistance is a sum, also over a periodic border, and of shells of 162 and 12 points."""
+    def films(x, a, words="", **options):
+        return (resistance(simulation, tmp_path, x, a, words + " lubrication yes", **options) -
+                resistance(simulation, tmp_path, x, a, words, **options))
+
+    a = np.array([1.0, 0.35, 0.35])
+    x = np.array([(0.6, 4.0, 1.1), (7.5245, 4.0, 2.0025), (4.0, 4.0, 4.62)])
+    in_slit = films(x, a, "far_field_tolerance 1e-9 wall zlo 0 zhi 5", boundary="p p f",
+                    box=[(0.0, 8.0), (0.0, 8.0), (-0.5, 5.5)])
+    alone, box = np.zeros((18, 18)), [(-40.0, 40.0)] * 3
+    alone[:12, :12] = films([x[0], x[1] - (8, 0, 0), (30, 0, 0)], a, box=box)[:12, :12]
+    for wall, away in (("zlo 0", 30), ("zhi 5", -30)):
+        for i in range(3):
+            own = slice(6 * i, 6 * i + 6)
+            alone[own, own] += films([(0, 0, x[i, 2]), (0, 30, away)], [a[i], 0.35], f"wall {wall}", box=box)[:6, :6]
+    assert np.abs(alone[:6, 6:12]).max() > 3 and np.abs(alone[12:, 12:]).max() > 3
+    assert np.abs(in_slit - alone).max() < 1e-7 * np.abs(alone).max()

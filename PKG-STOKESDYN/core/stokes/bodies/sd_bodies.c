@@ -88,6 +88,20 @@ static sd_bodies_verdict judge_guess(sd_bodies_loop *c, double rz)
   return rz > c->power.alone ? BEGIN_ANEW : GO_ON;
 }
 
+/* r.z is blind to what the solution of the tie lacks. Where a push from far away moves a close pair as one, that is
+ * far more than r.z, which it may make negative. Then the tie is solved more closely in all of the solve, which costs
+ * products with L and the directions so far, but no product with the mobility. */
+static int needs_closer_tie(sd_bodies_loop *c, double rz)
+{
+  const struct sd_tie *tie = c->A->tie;
+  const sd_bodies_powers *power = &c->power;
+  const double enough = fmax(power->floor, c->problem->tolerance * c->problem->tolerance * power->spent);
+  if (!tie || c->tie_tolerance < 1e-9) return 0;
+  c->closer = rz < -fmax(power->floor, power->noise) ? tie->anew : rz <= enough && tie->left > enough;
+  if (c->closer) c->closest = c->tie_tolerance *= 0.01;
+  return c->closer;
+}
+
 /* r.z is the power of what is still wrong, by the blocks of the bodies: below the floor it is
  * rounding of velocities that are the stream's own. */
 static sd_status bodies_judge(void *ctx, const sd_cg_state *now, int *done)
@@ -100,9 +114,10 @@ static sd_status bodies_judge(void *ctx, const sd_cg_state *now, int *done)
   power->spent = fmax(fabs(now->own[FORCES]), now->own[LOADS] - power->carried);
   if (now->steps > 0 && now->pp > 0.0)
     report->curvature = fmin(report->curvature, now->pw / now->pp);
-  if (now->steps == 0 && c->verdict == GO_ON && c->problem->warm &&
+  if (now->steps == 0 && c->verdict == GO_ON && c->problem->warm && c->closest == 1.0 &&
       (c->verdict = judge_guess(c, now->rz)) != GO_ON)
     return SD_OK;
+  if (needs_closer_tie(c, now->rz)) return SD_OK;
   if (now->rz < -fmax(power->floor, power->noise)) return SD_EINDEFINITE;
   /* nothing is spent yet: a guess of no forces on bodies that are all held */
   const double wrong = fmax(now->rz, 0.0);
@@ -148,7 +163,10 @@ static sd_status bodies_iterate(sd_bodies_loop *c)
     const sd_bodies_verdict last = c->verdict;
     if (last != GO_ON) status = last == SETTLE ? settle(c) : sd_bodies_start_cold(c);
     if (last == SETTLE) c->verdict = GO_ON;
-    if (status == SD_OK) status = sd_cg_run(&cg, &c->v, &state);
+    for (c->closer = 1; status == SD_OK && c->closer;) {
+      c->closer = 0;
+      status = sd_cg_run(&cg, &c->v, &state);
+    }
     if (last == BEGIN_ANEW) break;
   } while (status == SD_OK && c->verdict != GO_ON);
   return status == SD_ESINGULAR ? SD_EINDEFINITE : status;
@@ -252,6 +270,7 @@ sd_status sd_bodies_solve(const sd_bodies *A, const sd_bodies_problem *problem,
       .shells = sd_bodies_shells(A),
       .hides = hides_points(A),
       .guess_is_new = problem->warm,
+      .closest = 1.0,
       .report = report,
   };
   if (beside_forces(A) > 0) c.tied = c.alone + 2 * largest_body(A);

@@ -18,7 +18,7 @@ const sd_bodies_accuracy *sd_bodies_accuracy_of(const sd_bodies_loop *c)
 double sd_bodies_tie_tolerance(const sd_bodies_loop *c, double power)
 {
   const sd_bodies_accuracy *a = sd_bodies_accuracy_of(c);
-  return fmax(a->first, fmin(a->loosest, a->first * sqrt(c->power.spent / power)));
+  return fmin(c->closest, fmax(a->first, fmin(a->loosest, a->first * sqrt(c->power.spent / power))));
 }
 
 sd_status sd_bodies_pre(sd_bodies_loop *c, const double *r, const double *f, int moved, double *l, double *V)

@@ -32,10 +32,11 @@ typedef struct {
   /* [SD_TIE_OF_BODY bodies] scratch of a tie; NULL: forces have as many rows, and lend theirs */
   double *tied;
   /* hides: there are points that no body has, whose forces are 0; rests: u is 0, on all ranks, known once the
-   * bodies have been for themselves */
-  int shells, guess_is_new, hides, rests;
+   * bodies have been for themselves; closer: the loop stopped to go on with a closer solution of the tie */
+  int shells, guess_is_new, hides, rests, closer;
   sd_bodies_verdict verdict;
-  double tie_tolerance;
+  /* of the tie's next solution, and the closest that one had to be in place of it, 1 if none had to */
+  double tie_tolerance, closest;
   sd_bodies_powers power;
   sd_bodies_report *report;
 } sd_bodies_loop;

@@ -123,6 +123,7 @@ sd_status sd_tie_solve(const sd_bodies *A, const sd_tie_problem *problem, sd_tie
   for (long j = 0; j < size; j++) v.r[j] = g[j] - borne[j] - x[j];
   memset(x, 0, sizeof(double) * (size_t) size);
   if ((status = sd_cg_run(&cg, &v, &state)) != SD_OK) return status;
+  A->tie->left = state.rz;
   for (long j = 0; j < size; j++) V[j] += x[j];
   sd_bodies_alone_resist(A, V, borne);
   for (long j = 0; j < size; j++) borne[j] = g[j] - v.r[j] - borne[j];

@@ -56,6 +56,8 @@ typedef struct sd_tie {
   const double *above;
   /* products with L since sd_tie_make */
   long products;
+  /* the power that the last solution of H V = g lacks, by the factor */
+  double left;
   /* For sd_tie_make, the same on all ranks: is the factor of these bodies, with these numbers? Then it stays
    * where H has hardly changed (sd_tie_kept.h). And what came of it: was it made anew? */
   int keep, anew;
