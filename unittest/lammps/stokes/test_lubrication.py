@@ -253,6 +253,29 @@ def test_films_in_shear_dissipate(simulation, e):
     assert lost[2] - 2 * lost[1] + lost[0] >= 0
 
 
+def test_free_shells_lose_least_in_a_strain(simulation):
+    """Helmholtz: no other motion than the free one loses less. What is lost is the rate of the fix, which may have
+    either sign, less that of the first moments; both sides of the free motion are alike."""
+    x, gradient = np.array([(0, 0, 0), (1.1, -0.3, 1.8), (-1.7, 0.4, 0.9)]), np.array([1.0, 0.5, -1.5])
+    style = "cut_off_distance inf visc 1.3 multiblob 12 lubrication yes relative_tolerance 1e-10 " \
+            "fluid_velocity v_ux v_uy v_uz"
+    options = dict(box=[(-20.0, 20.0)] * 3, before_pair="\n".join(f"variable u{c} atom {g}*{c}"
+                                                                 for c, g in zip("xyz", gradient)))
+    spheres = Spheres(x, [1.0, 1.0, 0.9])
+    sim = simulation(spheres, style, fix=False, **options).commands(FIX).run(0)
+    free, spin, lost = sim.v, sim.atom("omega"), []
+    for part in (0.5, 1.0, 1.5):
+        sim = simulation(Spheres(x, spheres.a, x * gradient + part * (free - x * gradient)), style, **options)
+        for k in range(3):
+            sim.set("omega", k + 1, part * spin[k])
+        sim.commands(["compute D all stokes_dynamics/stress", "compute d all reduce sum " + " ".join(
+            f"c_D[{k}]" for k in (1, 2, 3, 7, 8, 9)), "thermo_style custom step c_d[1]"]).run(0)
+        moments = sim.compute_vector("d", 6)
+        lost.append(sim.fix_scalar() - (moments[:3] + moments[3:]) @ gradient)
+        assert part != 0.5 or sim.fix_scalar() < 0
+    assert lost[0] == pytest.approx(lost[2], rel=1e-7) and lost[0] > lost[1] * 1.01 > 0
+
+
 def test_what_is_lost_in_shear_is_the_same_with_and_without_inertia(simulation):
     """Velocities from forces, and forces from these velocities: one power."""
     rng = np.random.default_rng(6)
