@@ -54,6 +54,9 @@ typedef struct {
   const struct sd_grid_kernels *kernels;
   /* points of the transform, of its occupied part, and wave numbers along z that are not 0 at every y */
   int size[3], occupied[3], waves;
+  /* a multiplication and a sweep find number d + turn of each three as their component d: directions of
+   * the grid may be those of its vectors in another order */
+  int turn;
   int rows, columns;
   /* [rows + 1] where the wave numbers of y of each row begin; [size y + 1] the waves of our z that are left
    * at all y before this one */

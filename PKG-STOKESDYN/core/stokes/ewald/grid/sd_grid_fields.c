@@ -245,8 +245,8 @@ static void through_plane(sd_grid *g, int y, sd_grid_multiply *multiply, void *c
   void *planes[6];
   if (depth == 0) return;
   for (int c = 0; c < 3; c++) {
-    planes[c] = g->plane[c];
-    planes[3 + c] = g->raised[c];
+    planes[c] = g->plane[(c + g->turn) % 3];
+    planes[3 + c] = g->raised[(c + g->turn) % 3];
     copy_plane(g, c, y, message, 1);
     clear_rows(g->beside, g->occupied[0], g->size[0], depth);
     FFT(execute_dft)(g->x_forth[depth], g->beside, g->plane[c]);

@@ -11,7 +11,7 @@
 #include "sd_room.h"
 #include "sd_whole.h"
 
-/* Gradients of the grid's coordinates, and their products */
+/* Gradients of the grid's coordinates, as vectors of the box, and their products */
 static void metric(sd_ewald_waves *w)
 {
   const sd_ewald_box *b = &w->ewald.box;
@@ -19,9 +19,9 @@ static void metric(sd_ewald_waves *w)
   sd_ewald_reciprocal(b, wave);
   for (int d = 0; d < 3; d++)
     for (int c = 0; c < 3; c++)
-      G[d][c] = b->periodic ? wave[d][c] / (2.0 * SD_PI) * w->ewald.grid[d]
-          : d == c          ? 1.0 / w->ewald.spacing
-                            : 0.0;
+      G[d][(c + w->turn) % 3] = b->periodic ? wave[d][c] / (2.0 * SD_PI) * w->ewald.grid[d]
+          : d == c                          ? 1.0 / w->ewald.spacing
+                                            : 0.0;
   static const int of[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
   for (int k = 0; k < 6; k++) {
     const double *g = G[of[k][0]], *h = G[of[k][1]];
@@ -119,6 +119,7 @@ static sd_status make_grid(sd_ewald_waves *w, const sd_world *world)
   if (status == SD_OK)
     status = sd_wave_create(&w->wave, e, w->kernels, size, w->grid.own[SD_SHARED_Y],
                             w->grid.own[SD_SHARED_Z]);
+  w->grid.turn = w->turn;
   return status == SD_OK && e->images.wall.sign ? raise_grid(w) : status;
 }
 
@@ -169,8 +170,8 @@ static sd_standing standing_of(const sd_ewald_waves *w)
 {
   const sd_ewald_box *b = &w->ewald.box;
   sd_standing s = {.shift = b->periodic ? -0.5 * w->ewald.points : 0.0, .a_ref = w->ewald.a_ref, .equal = 1};
-  memcpy(s.gradient, w->spreading.gradient, sizeof(s.gradient));
   for (int d = 0; d < 3; d++) {
+    for (int c = 0; c < 3; c++) s.gradient[d][c] = w->spreading.gradient[d][(c + w->turn) % 3];
     const double spare = 1e-9 * b->edge[d];
     s.origin[d] = b->origin[d];
     s.lo[d] = b->periodic ? -INFINITY : b->origin[d] - spare;
@@ -374,17 +375,9 @@ void sd_ewald_waves_add(const sd_ewald_waves *w, const sd_spheres *s, const void
   }
 }
 
-/* Vectors of the rows in the frame that is `turn` further */
-static void turn_rows(const sd_ewald_waves *w, void *rows, int turn)
-{
-  const long vectors = (long) w->width / 3 * w->n;
-  for (long k = 0; k < vectors && turn % 3; k++) turn_row(rows, w->kernels->bytes, 3 * k, turn);
-}
-
 sd_status sd_ewald_waves_convolve(sd_ewald_waves *w, void *rows)
 {
   sd_grid *g = &w->grid;
-  turn_rows(w, rows, w->turn);
   memset(g->brick, 0, g->bytes * sd_grid_brick_numbers(g));
   w->spreading.F = rows;
   w->kernels->spread(&w->spreading);
@@ -395,7 +388,6 @@ sd_status sd_ewald_waves_apply(sd_ewald_waves *w, void *rows)
 {
   const sd_status status = sd_ewald_waves_convolve(w, rows);
   if (status == SD_OK) w->kernels->interpolate(&w->spreading);
-  turn_rows(w, rows, 3 - w->turn);
   return status;
 }
 
@@ -406,7 +398,7 @@ typedef struct {
   sd_random_key key;
 } white;
 
-/* Direction d of the frame is d + turn of the box, and so is component d. */
+/* Direction d of the frame is d + turn of the box. */
 static void fill_white(void *ctx, int x, int y, int y_end, double *const *fields)
 {
   const white *from = ctx;
@@ -422,7 +414,7 @@ static void fill_white(void *ctx, int x, int y, int y_end, double *const *fields
               (uint64_t) size[2] + (uint64_t) at[2];
       double normals[3];
       sd_random_normals(&from->key, point, 3, normals);
-      for (int d = 0; d < 3; d++) fields[d][sd_grid_number(w->ewald.grid[2], k - y, z)] = normals[(d + w->turn) % 3];
+      for (int d = 0; d < 3; d++) fields[d][sd_grid_number(w->ewald.grid[2], k - y, z)] = normals[d];
     }
   }
 }
@@ -435,6 +427,5 @@ sd_status sd_ewald_waves_draw(sd_ewald_waves *w, const sd_random_key *key, void 
   const sd_status status =
       sd_grid_convolve_values(&w->grid, fill_white, &from, sd_wave_multiply_root, &w->wave);
   if (status == SD_OK) w->kernels->interpolate(&w->spreading);
-  turn_rows(w, rows, 3 - w->turn);
   return status;
 }

@@ -6,7 +6,8 @@
  * Each rank spreads and interpolates its own spheres on a brick of the grid; slabs of it are
  * transformed by turns (sd_grid.h). Slabs are planes of the first direction. Where ranks are cut
  * along another one, and the box has no tilt, all of this happens in a frame turned cyclically, so
- * that most of a brick is in the slab of its own rank. */
+ * that most of a brick is in the slab of its own rank. Forces and velocities keep the components of the
+ * box: waves alone find them in the order of the frame (sd_grid.turn). */
 #ifndef SD_EWALD_WAVES_H
 #define SD_EWALD_WAVES_H
 
