@@ -43,7 +43,7 @@ static int plan(sd_grid *g)
                                  FFTW_BACKWARD, how);
   g->y_forth = FFT(plan_many_dft)(1, size + 1, depth, plane, NULL, depth, 1, slab, NULL, depth, 1,
                                   FFTW_FORWARD, how);
-  g->y_back = FFT(plan_many_dft)(1, size + 1, depth, slab, NULL, depth, 1, plane, NULL, depth, 1,
+  g->y_back = FFT(plan_many_dft)(1, size + 1, depth, beside, NULL, depth, 1, plane, NULL, depth, 1,
                                  FFTW_BACKWARD, how);
   int ok = g->z_forth && g->z_back && g->y_forth && g->y_back;
   for (int y = g->own[SD_SHARED_Y][0]; y < g->own[SD_SHARED_Y][1] && ok; y++) ok = plan_x(g, sd_grid_depth(g, y));
@@ -178,16 +178,6 @@ static void clear_rows(waves *rows, int from, int end, int depth)
   memset(rows + (long) from * depth, 0, sizeof(waves) * (size_t) (end - from) * (size_t) depth);
 }
 
-/* Waves that are not left, of plane x of the slab */
-static void clear_beyond(const sd_grid *g, int c, int x)
-{
-  const int all = sd_grid_own(g, SD_SHARED_Z);
-  for (int y = 0; y < g->size[1]; y++) {
-    const int depth = sd_grid_depth(g, y);
-    memset(slab_row(g, c, x, y) + depth, 0, sizeof(waves) * (size_t) (all - depth));
-  }
-}
-
 /* A plane along y to the slab, or back */
 static void forth_along_y(sd_grid *g, int c, int x, real *message)
 {
@@ -199,8 +189,7 @@ static void forth_along_y(sd_grid *g, int c, int x, real *message)
 static void back_along_y(sd_grid *g, int c, int x, real *message)
 {
   copy_rows(g, c, x, message, 1);
-  clear_beyond(g, c, x);
-  FFT(execute_dft)(g->y_back, slab_row(g, c, x, 0), g->plane[c]);
+  FFT(execute_dft)(g->y_back, g->beside, g->plane[c]);
 }
 
 /* Rows of `beside` times their heights, along x to `raised` */

@@ -48,22 +48,27 @@ static void copy_depths(const sd_grid *g, int c, int x, real *message, int to_pl
 }
 
 /* The turn in a column, from x to y planes: from each rank to each a box of wave numbers [3][its
- * x][its y][z that are left]. Rows y of other ranks in our plane x, to the message or from it */
-static void copy_rows(const sd_grid *g, int c, int x, real *message, int to_slab)
+ * x][its y][z that are left]. Rows y of our plane x: those of other ranks from the slab to the message; or all of
+ * them to `beside`, from the slab or from the message, with zeros for what is not left. What is transformed next is
+ * in the cache then, and rows that have come in are written once. */
+static void copy_rows(const sd_grid *g, int c, int x, real *message, int to_beside)
 {
-  const long planes = sd_grid_own(g, SD_SHARED_X);
+  const long planes = sd_grid_own(g, SD_SHARED_X), depth = 2L * sd_grid_own(g, SD_SHARED_Z);
   for (int r = g->me % g->columns; r < g->rows * g->columns; r += g->columns) {
+    const int ours = r == g->me;
     int range[2];
-    if (r == g->me) continue;
+    if (ours && !to_beside) continue;
     sd_grid_range_of(g, SD_SHARED_Y, r, range);
     const long numbers = 2 * sd_grid_waves_of(g, r);
     real *box = message + (c * planes + x - g->own[SD_SHARED_X][0]) * numbers;
     for (int y = range[0]; y < range[1]; y++) {
       const long row = 2L * sd_grid_depth(g, y);
-      copy((real *) slab_row(g, c, x, y), box, row, to_slab);
+      real *slab = (real *) slab_row(g, c, x, y), *beside = (real *) g->beside + y * depth;
+      copy(to_beside ? beside : slab, ours ? slab : box, row, to_beside);
+      if (to_beside) memset(beside + row, 0, sizeof(real) * (size_t) (depth - row));
       box += row;
     }
-    message += 3 * planes * numbers;
+    if (!ours) message += 3 * planes * numbers;
   }
 }
 
