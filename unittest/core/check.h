@@ -20,12 +20,12 @@
                v_ - e_);                                                                   \
   } while (0)
 
-/* How much a test goes through: with sanitizers, which take several times as long, as much as leads
- * through the same code */
-#ifdef SD_SANITIZED
-#define CHECK_SIZE(whole, sanitized) (sanitized)
+/* How much a test goes through: with sanitizers, and where kernels are not optimized, which take several
+ * times as long, as much as leads through the same code */
+#ifdef SD_SMALL
+#define CHECK_SIZE(whole, small) (small)
 #else
-#define CHECK_SIZE(whole, sanitized) (whole)
+#define CHECK_SIZE(whole, small) (whole)
 #endif
 
 /* Uniform in (lo, hi), the same on every machine. */

@@ -65,6 +65,14 @@
 #define ALIGNED(bytes) __attribute__((aligned(bytes)))
 #define SELDOM(condition) __builtin_expect(condition, 0)
 #endif
+/* A loop that is copied for some of its arguments, which are constants in a copy. Sanitizers, with whose
+ * checks all copies compile for minutes, find in one what they find in all; and where there are vectors,
+ * plain C need not be quick. */
+#if defined(SD_SMALL) || (defined(SD_HAS_VECTORS) && SD_LANES == 1)
+#define COPIED NOT_INLINE
+#else
+#define COPIED INLINE
+#endif
 
 /* LANEWISE: a vector of f(lane, argument). LANE: a number of a vector. */
 #ifdef SD_SINGLE

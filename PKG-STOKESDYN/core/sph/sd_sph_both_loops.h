@@ -49,7 +49,7 @@ INLINE void store_columns(double *row, int columns, vec *sum)
   if (columns > SD_SPH_MAXIMUM) row[SD_SPH_MAXIMUM] = largest;
 }
 
-INLINE void middle(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
+COPIED void middle(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
                    double *sums, const sd_sph_near *near, sd_sph_level level, sd_sph_kernel kernel,
                    int many)
 {
@@ -108,7 +108,7 @@ INLINE void middle(const sd_sph_model *model, const sd_sph_both *list, const sd_
 
 /* The second pass of a step with delta, when the gradients are known on both sides of each pair.
  * psi . grad W = -g (2 (rho_j - rho_i) + (grad rho_i + grad rho_j) . d). */
-INLINE void diffusion(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
+COPIED void diffusion(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
                       double *rate, sd_sph_kernel kernel, int many)
 {
   const int fluids = sd_sph_of_fluids(model) && p->phase;

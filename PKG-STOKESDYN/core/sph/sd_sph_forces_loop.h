@@ -198,7 +198,7 @@ INLINE double *hand_out(const vec F[3], int count, double *each)
 }
 
 /* Over a half list: what i gets is taken from j. */
-INLINE double forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+COPIED double forces(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                      double *f4, double *each, terms has, sd_sph_kernel kernel, int many)
 {
   has = terms_in_copy(has, kernel, many);
@@ -259,7 +259,7 @@ INLINE vec pressures_on(int wall, const pairs_of_one *q, sd_sph_scheme scheme)
 
 /* With correction, over a list both ways. Between fluid particles without friction B_j is not
  * needed, and B_i stands before the sum. */
-INLINE double slopes(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
+COPIED double slopes(const sd_sph_model *model, const sd_sph_both *list, const sd_sph_particles *p,
                      double *f4, double *each, terms has, sd_sph_kernel kernel, int many)
 {
   has = terms_in_copy(has, kernel, many);

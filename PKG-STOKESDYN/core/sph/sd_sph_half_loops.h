@@ -5,7 +5,7 @@
 #include "sd_sph_neighbours.h"
 
 /* The density rate of the plain scheme and of two fluids. The list of near pairs comes with it. */
-INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+COPIED void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                   double *rate, const sd_sph_near *near, int volume, sd_sph_kernel kernel, int many)
 {
   const vec two = all(2.0);
@@ -48,7 +48,7 @@ INLINE void rates(const sd_sph_model *model, const sd_sph_list *list, const sd_s
 
 /* Both d and u change sign between i and j, so that the two have the same sums but for the volume of the
  * other one. */
-INLINE void gradients(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+COPIED void gradients(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                       double *sums, sd_sph_kernel kernel, int many)
 {
   const vec zero = all(0.0), two = all(2.0);
@@ -96,7 +96,7 @@ INLINE void gradients(const sd_sph_model *model, const sd_sph_list *list, const 
 }
 
 /* W is the same for i and j, so each takes the other's row times W. */
-INLINE void weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
+COPIED void weigh(const sd_sph_model *model, const sd_sph_list *list, const sd_sph_particles *p,
                   const double *q, double *sums, sd_sph_kernel kernel, int many)
 {
   const vec two = all(2.0);
@@ -134,7 +134,7 @@ INLINE void add_turned(const double *spins, const int j[LANES], const vec d[3], 
 
 /* What wall particles take from the fluid before them. A pair counts for its wall particle alone,
  * and neighbours of the same kind as i, most of them, cost no kernel. */
-INLINE void before_walls(const sd_sph_model *model, const sd_sph_list *list,
+COPIED void before_walls(const sd_sph_model *model, const sd_sph_list *list,
                          const sd_sph_particles *p, const double *q, const double *spins,
                          double *sums, sd_sph_kernel kernel, int many)
 {

@@ -41,7 +41,7 @@ INLINE int sums_wait(const sd_sph_film *f, int i)
 #define NEXT(f, i) ((f)->list->neighbor[i] + at)
 #define IS_WALL(k, wall) (long long) -(wall)[j[k]]
 
-INLINE void film_sums(const sd_sph_film *f, double *sums, sd_sph_kernel kernel, int walls)
+COPIED void film_sums(const sd_sph_film *f, double *sums, sd_sph_kernel kernel, int walls)
 {
   const scales c = scales_of(f);
   for EACH_NEAR(f, row, i) {
@@ -69,7 +69,7 @@ INLINE void film_sums(const sd_sph_film *f, double *sums, sd_sph_kernel kernel, 
   }
 }
 
-INLINE void film_wet_walls(const sd_sph_film *f, const double *contact, const sd_sph_film_rows *rows,
+COPIED void film_wet_walls(const sd_sph_film *f, const double *contact, const sd_sph_film_rows *rows,
                            sd_sph_kernel kernel)
 {
   const scales c = scales_of(f);
@@ -125,7 +125,7 @@ INLINE void add_turns(const vec d[3], const vec turn[3], vec g, vec *sum)
   }
 }
 
-INLINE void film_turns(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *v4, const sd_sph_skin *skin,
+COPIED void film_turns(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *v4, const sd_sph_skin *skin,
                        sd_sph_kernel kernel)
 {
   const double *surface = rows->surface, *at_wall = rows->at_wall;
@@ -188,7 +188,7 @@ static void film_means(const sd_sph_film *f, const sd_sph_skin *skin, const doub
 
 /* Few of all neighbours show a curvature, but to pick them first is slower than to sum up zeros; with G of those whose
  * sums have waited. */
-INLINE void film_inwards(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *k, double *mean,
+COPIED void film_inwards(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *k, double *mean,
                          sd_sph_kernel kernel)
 {
   const double *surface = rows->surface;

@@ -88,7 +88,7 @@ INLINE void OF(add_to_bricks)(int turns, int degree, const sd_field_part *p, con
   }
 }
 
-INLINE void OF(near_with)(int turns, int degree, const sd_field_part *p, sd_field_block *b)
+COPIED void OF(near_with)(int turns, int degree, const sd_field_part *p, sd_field_block *b)
 {
   const brick_middles middles = middles_of(p, b);
   REALS c[3][SD_RADIAL_TERMS];

@@ -42,7 +42,7 @@ INLINE void fetch_group(const sd_near_part *p, long row)
   for (int k = 0; k < 4 * SD_GROUP_POINTS; k += LANES) sd_fetch(sums + 4 * row + k);
 }
 
-INLINE void near_group_forces(int equal, int degree, const sd_near_part *p, const sd_near_groups *g)
+COPIED void near_group_forces(int equal, int degree, const sd_near_part *p, const sd_near_groups *g)
 {
   near_polynomials shared;
   near_polynomials_of(p, &shared);

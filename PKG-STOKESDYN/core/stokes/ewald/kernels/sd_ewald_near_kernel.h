@@ -222,7 +222,7 @@ INLINE void near_bunch_add(int equal, int own, int degree, const near_constants 
   }
 }
 
-INLINE void near_forces(int equal, int degree, const sd_near_part *p)
+COPIED void near_forces(int equal, int degree, const sd_near_part *p)
 {
   near_polynomials shared;
   near_polynomials_of(p, &shared);
@@ -246,7 +246,7 @@ INLINE void near_forces(int equal, int degree, const sd_near_part *p)
 }
 
 /* With torques all eight; of equal radii those that b is not a factor of. A bunch is one row. */
-INLINE void near_torques(int equal, int degree, const sd_near_part *p)
+COPIED void near_torques(int equal, int degree, const sd_near_part *p)
 {
   const real *rows = p->row, *turns = p->torque_row;
   real *sums = p->u;

@@ -214,7 +214,7 @@ INLINE void spread_chunk(int terms, int vectors, const spreading *s, const windo
   }
 }
 
-INLINE void spread_with(int terms, int vectors, int chunks, const spreading *s)
+COPIED void spread_with(int terms, int vectors, int chunks, const spreading *s)
 {
   windows w;
   for (int i = 0; i < s->n; i++) {
@@ -310,7 +310,7 @@ INLINE void gather_chunk(int terms, int vectors, const spreading *s, const windo
     for (int t = 0; t < 4; t++) store(S + t * MOST_ROW + LANES * l, v[l][t]);
 }
 
-INLINE void interpolate_with(int terms, int vectors, int chunks, const spreading *s)
+COPIED void interpolate_with(int terms, int vectors, int chunks, const spreading *s)
 {
   real S[4][MOST_ROW] ALIGNED(64) = {{0}};
   windows w;

@@ -85,7 +85,7 @@ INLINE void image_add(const vec *c, vec c4, vec c5, vec x, vec y, vec z, const v
   u[2] += c5 * p - (c[1] + c[0]) * F[2] + along * z;
 }
 
-INLINE void near_images(int equal, int degree, const sd_image_part *p)
+COPIED void near_images(int equal, int degree, const sd_image_part *p)
 {
   const vec range2 = all(p->range2), twice = all(2.0 / p->range2), one = all(1.0);
   const vec sixth = all(1.0 / 6.0), ref = all(p->ref2 / 6.0), none = all(0.0);
