@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
-"""The bed in calm and in shaken air, fluidised.png.     run.py [--ranks N] [--seconds T] [--out DIR] [--update]
+"""The bed in calm and in shaken air, fluidised.png.
 
-Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is missed."""
+    run.py [--ranks N] [--seconds T] [--out DIR] [--quick] [--update]
+
+--quick: half of the time. Ends with a line ok or MISSED for each figure of the README, and exits with 1 when one is
+missed."""
 import os
 import sys
 
@@ -22,13 +25,14 @@ def drag(w):
 
 
 def main():
-    given, c = options(__file__, __doc__, ranks=1, seconds=4.0), Checks()
+    given, c = options(__file__, __doc__, ranks=1, seconds=4.0, quick=False), Checks()
+    seconds = 2.0 if given.quick else given.seconds
     need("mpirun", "lmp")
     figure, axes = plt.subplots(figsize=(6, 4))
     found = {}
     for name, intensity in (("calm", 0.0), ("shaken", 2.0)):
         log = f"log.vans_fluidised.{given.ranks}" if name == "shaken" else "none"
-        lmp(HERE, given, given.out, log, intensity=intensity, name=name, seconds=given.seconds)
+        lmp(HERE, given, given.out, log, intensity=intensity, name=name, seconds=seconds)
         series = np.loadtxt(given.out / f"series.{name}")
         t = (series[:, 0] - series[0, 0]) * 5e-5
         found[name] = series[t > t[-1] / 2]

@@ -110,12 +110,13 @@ def allowed(*layouts):
     return [layout for layout in layouts if (layout if isinstance(layout, int) else layout[0]) <= most()]
 
 
-def by_open_mpi(parameters, but=1):
+def by_open_mpi(parameters, but=1, several=False):
     """Parameters of a test on several ranks that choose what the core computes, and ask nothing else of LAMMPS and MPI:
-    MPICH, whose ranks are two and spin, has the first ones; Open MPI all of them, on more ranks."""
+    MPICH, whose ranks are two and spin, has the first ones; Open MPI all of them, on more ranks. several: each of them
+    is a tuple, of several arguments of the test."""
     more = pytest.mark.nothing_to_test_if(family() == "MPICH", "on several ranks other scenes of these tests ask MPICH "
                                           "for the same, and Open MPI has these too")
-    return [p if k < but else pytest.param(p, marks=more) for k, p in enumerate(parameters)]
+    return [pytest.param(*(p if several else (p,)), marks=() if k < but else more) for k, p in enumerate(parameters)]
 
 
 def one_at_a_time():

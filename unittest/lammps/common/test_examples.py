@@ -12,10 +12,10 @@ from host import PATIENCE, environment
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[3] / "examples"
 QUICK = ["dense_settling", "first_look", "fixed_bed", "landing", "notebook", "python_clump",
-         "rolling", "slit_bead", "squeeze", "vans_drag", "vans_fluid", "vans_fluidised", "wall_shear"]
+         "rolling", "slit_bead", "squeeze", "vans_drag", "vans_fluid", "wall_shear"]
 # by their option --quick
 BRIEF = ["active", "cfd_coupling", "fibres", "hele_shaw", "magnetic", "rheology", "roller_layer", "settling_layer",
-         "shapes", "ship", "swimmers", "tumbling", "vans_sorting", "vans_waves"]
+         "shapes", "ship", "swimmers", "tumbling", "vans_fluidised", "vans_sorting", "vans_waves"]
 
 
 # how a warning about a command of LAMMPS beside ours begins (common/neighbours.h)

@@ -126,7 +126,7 @@ def test_a_fixed_bed_has_the_pressure_drop_of_its_law(law, phi, spacing):
         run(lmp, scene((5, 5, 5), mu, 10, 0.02, "drag " + law,
                        f"lattice sc {spacing**-3}\ncreate_atoms 2 box\nlattice sc 1", diameter, mover="",
                        before_fix=f"fix push water gravity {G:.17g} vector 0 0 1"))
-        run(lmp, f"velocity water set 0 0 {0.5 * w} units box\nrun 200")
+        run(lmp, f"velocity water set 0 0 {0.5 * w} units box\nrun 100")
         v, kind = by_id(lmp, "v", 3)[:, 2], by_id(lmp, "type")
         lmp.close()
         assert (kind == 2).sum() == round(5 / spacing) ** 3

@@ -220,10 +220,10 @@ def test_where_noise_has_faded_the_path_is_that_without(simulation, style):
     """The half step knows of other spheres what films know: where there is noise, what is not random has an error of
     the first order."""
     off = []
-    for n in (20, 40, 80):
+    for n in (10, 20, 40):
         (one, H), (other, _) = (moved(simulation, style, steps=n, dt=0.8 / n, kT=kT) for kT in (FAINT, 0.0))
         off.append(np.abs(up_to_images(one - other, H)).max())
-    assert off[0] < 0.02 and off[1] < 0.6 * off[0] and off[2] < 0.6 * off[1]
+    assert off[1] < 0.02 and off[1] < 0.6 * off[0] and off[2] < 0.6 * off[1]
 
 
 # --- one run, in whatever pieces and on however many ranks ------------------------------------------------------------

@@ -60,8 +60,8 @@ def test_ranks_and_newton_do_not_matter(tmp_path, way):
 
 
 @pytest.mark.parametrize("way, options, ranks",
-                         [(way, "", 2) for way in WAYS] + [("clumps with shells", "adapt 3 1e-3 0.5 0.05", 1),
-                                                            ("spheres", "scheme euler", 1)])
+                         by_open_mpi([(way, "", 2) for way in WAYS], but=3, several=True) +
+                         [("clumps with shells", "adapt 3 1e-3 0.5 0.05", 1), ("spheres", "scheme euler", 1)])
 def test_a_run_in_pieces_is_the_run_in_one(tmp_path, way, options, ranks):
     """In two runs, and in two with a restart file in between"""
     def once(runs):

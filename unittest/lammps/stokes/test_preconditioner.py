@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from host import allowed, at_most
+from host import allowed, at_most, by_open_mpi
 from suspensions import A, ALONG, ETA, EXACT, STOKES, flocs, lattice, loose_lattice
 from system import LammpsError, Spheres, dump_lines, input_lines, largest_difference, lmp, lmp_in_turn, read_dump
 
@@ -258,12 +258,12 @@ def going(tmp_path, name, mode, precondition, molecules, tolerance, ranks=1, new
     return read_dump(folder / "dump")[-1][1][:, 1:]
 
 
-@pytest.mark.parametrize("mode,precondition,molecules,tolerance", [
-    ("all", "none", 1, 1e-3), ("all", "sparse", 0, 1e-3), ("all", "clump", 1, 1e-3), ("clumps", "clump", 1, 1e-3),
+@pytest.mark.parametrize("mode,precondition,molecules,tolerance", by_open_mpi([
+    ("clumps", "clump", 1, 1e-3), ("all", "sparse", 0, 1e-3), ("all", "none", 1, 1e-3), ("all", "clump", 1, 1e-3),
     ("periodic", "waves", 0, 1e-3), ("all", "auto", 0, 9e-4),        # 192 unknowns: the inverse
     # blocks of the parts of clumps that a rank owns are others on other ranks: at a loose tolerance the answer shows
     # them
-    ("periodic", "waves", 1, 1e-13), ("taper", "clump", 1, 1e-13)])
+    ("periodic", "waves", 1, 1e-13), ("taper", "clump", 1, 1e-13)], but=2, several=True))
 def test_ranks_restart_and_newton_leave_the_run_as_it_is(tmp_path, mode, precondition, molecules, tolerance):
     """Also at a tolerance at which the answer shows what preconditioned it, and though it was made some steps
     before."""

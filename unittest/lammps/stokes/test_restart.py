@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import model
+from host import by_open_mpi
 from system import LammpsError, Spheres, chain, dump_lines, input_lines, largest_difference, lmp, read_dump
 
 ETA, A = 1.3, 0.7
@@ -190,7 +191,7 @@ def test_force_inside_the_pair_style_continues(simulation, tmp_path):
 
 
 @pytest.mark.parametrize("kind", INTEGRATORS)
-@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("mode", by_open_mpi(MODES))
 @pytest.mark.parametrize("write,read", [(2, 1), (1, 2)])
 def test_restart_on_another_number_of_ranks_continues(unbroken, tmp_path, kind, mode, write, read):
     words = style(mode, 7, "exact")

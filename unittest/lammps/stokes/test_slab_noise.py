@@ -26,7 +26,7 @@ def test_modes_have_the_variance_of_the_mobility(simulation, walls):
     eigenvalue, mode = np.linalg.eigh(0.5 * (M + M.T))
     assert eigenvalue[0] > 0
     sim = simulation(Spheres(x), style, fix=False, dt=dt, box=box, boundary="p p f")
-    sim.commands(f"{MOVE} temperature {KT} 91 noise_tolerance 1e-3 scheme midpoint").run(0)
+    sim.commands(f"{MOVE} temperature {KT} 91 noise_tolerance 1e-2 scheme midpoint").run(0)
     d = []
     for _ in range(steps):
         at = sim.x.ravel()

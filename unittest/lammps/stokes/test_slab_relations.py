@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from host import allowed
+from host import allowed, by_open_mpi
 from system import LammpsError, Spheres, dump_lines, input_lines, lmp, read_dump
 from test_slab import FLOOR, MOVE, cell, fall, heap, matrix
 from test_wall import pull
@@ -93,7 +93,8 @@ def test_flux_less_pressure_is_of_rank_one_in_each_direction(simulation):
             assert off[:, d, :, e] == pytest.approx(expected if d == e < 2 else np.zeros((3, 3)), abs=1e-11)
 
 
-@pytest.mark.parametrize("way, style", [*[(way, TIGHT) for way in GEOMETRIES], ("flux", SHELLS)])
+@pytest.mark.parametrize("way, style", by_open_mpi([("flux", SHELLS), *[(way, TIGHT) for way in GEOMETRIES]], but=2,
+                                                   several=True))
 def test_velocities_are_those_of_one_rank(tmp_path, way, style):
     spheres, F = scene(way, style is SHELLS)
 

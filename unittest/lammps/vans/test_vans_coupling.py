@@ -3,7 +3,7 @@ import re
 
 import numpy as np
 import pytest
-from host import allowed
+from host import allowed, by_open_mpi
 from system import STYLES_OF_TODAY, there
 # close_scenes is a fixture
 from vans_helper import Scene, bed_script, close_scenes, dump_rows, run_lmp, write_columns  # noqa: F401
@@ -85,7 +85,8 @@ AND_THESE = ("langevin schmidt 0.44 turbulence ni_capart bed_mixing 0.5 pressure
              "sidewall 0.03 1")
 
 
-@pytest.mark.parametrize("kind", ["correlated", "depth", "depth felt volume", ALL_THAT_MOVES, AND_THESE])
+@pytest.mark.parametrize("kind", by_open_mpi([ALL_THAT_MOVES, AND_THESE, "correlated", "depth", "depth felt volume"],
+                                             but=2))
 def test_ranks_agree(tmp_path, profile, kind):
     """Positions, velocities, forces and profiles on 2 and 4 ranks as on one, to 1e-10; fluctuations on."""
     result = {}
