@@ -63,26 +63,26 @@ static void one_sphere_in_an_open_box_feels_nothing(void **state)
 }
 
 /* u = M F by a loose and by a tight sum */
-static void agrees_with_a_tighter_sum(const double *x, const double *a, int n, const sd_ewald_box *box,
-                                      double tolerance)
+static void agrees_with_a_tighter_sum(const double *x, const double *a, int n, int width,
+                                      const sd_ewald_box *box, double tolerance)
 {
   uint64_t seed = 6;
   double F[6 * MOST], u[6 * MOST], v[6 * MOST], off = 0.0, scale = 0.0;
   for (int i = 0; i < n; i++)
-    for (int d = 0; d < 6; d++) F[6 * i + d] = uniform(&seed, -1, 1) * pow(a[i], d < 3 ? 1 : 3);
+    for (int d = 0; d < width; d++) F[width * i + d] = uniform(&seed, -1, 1) * pow(a[i], d < 3 ? 1 : 3);
   for (int tight = 0; tight < 2; tight++) {
-    const sd_ewald how = periodic_choose(box, a, n, 6, tight ? 1e-4 * tolerance : tolerance);
+    const sd_ewald how = periodic_choose(box, a, n, width, tight ? 1e-4 * tolerance : tolerance);
     periodic p;
-    periodic_place(&p, x, a, NULL, n, 6, &how);
+    periodic_place(&p, x, a, NULL, n, width, &how);
     periodic_apply(&p, F, tight ? v : u);
     periodic_free(&p);
   }
   for (int i = 0; i < n; i++)
-    for (int d = 0; d < 6; d++) {
-      assert_true(isfinite(u[6 * i + d]));
+    for (int d = 0; d < width; d++) {
+      assert_true(isfinite(u[width * i + d]));
       const double own = d < 3 ? 6.0 * SD_PI * a[i] : 8.0 * SD_PI * pow(a[i], 3);
-      off += pow((u[6 * i + d] - v[6 * i + d]) * (d < 3 ? 1.0 : a[i]), 2);
-      scale += pow(F[6 * i + d] / own * (d < 3 ? 1.0 : a[i]), 2);
+      off += pow((u[width * i + d] - v[width * i + d]) * (d < 3 ? 1.0 : a[i]), 2);
+      scale += pow(F[width * i + d] / own * (d < 3 ? 1.0 : a[i]), 2);
     }
   assert_true(sqrt(off / scale) < tolerance);
 }
@@ -92,8 +92,25 @@ static void spheres_at_one_point_and_larger_than_the_box(void **state)
   (void) state;
   const double x[12] = {4, 4, 4, 4, 4, 4, 4.3, 4, 4, 9, 9, 9}, together[4] = {1, 1, 0.5, 2}, huge[4] = {1, 0.5, 7, 2};
   for (double tolerance = 1e-2; tolerance > 1e-8; tolerance *= 1e-2) {
-    agrees_with_a_tighter_sum(x, together, 4, &cube, tolerance);
-    agrees_with_a_tighter_sum(x, huge, 4, &cube, tolerance);
+    agrees_with_a_tighter_sum(x, together, 4, 6, &cube, tolerance);
+    agrees_with_a_tighter_sum(x, huge, 4, 6, &cube, tolerance);
+  }
+}
+
+/* No wave across it is kept. */
+static void a_box_as_thin_as_its_spheres(void **state)
+{
+  (void) state;
+  uint64_t seed = 5;
+  double x[3 * MOST], a[MOST];
+  for (double thick = 2.0; thick < 2.4; thick += 0.1) {
+    const sd_ewald_box box = {.periodic = 1, .edge = {60, 47, thick}};
+    for (int i = 0; i < MOST; i++) a[i] = 1.0;
+    for (int i = 0; i < 3 * MOST; i++) x[i] = uniform(&seed, 0, 1) * box.edge[i % 3];
+    for (int width = 3; width <= 6; width += 3) {
+      agrees_with_a_tighter_sum(x, a, MOST, width, &box, 0.1);
+      agrees_with_a_tighter_sum(x, a, MOST, width, &box, 1e-2);
+    }
   }
 }
 
@@ -108,8 +125,8 @@ static void radii_of_one_to_a_hundred(void **state)
     for (int d = 0; d < 3; d++) x[3 * i + d] = uniform(&seed, 0, 1) * box.edge[d];
     a[i] = i == 0 ? 100.0 : exp(uniform(&seed, 0.0, log(100.0)));
   }
-  agrees_with_a_tighter_sum(x, a, MOST, &box, 1e-3);
-  agrees_with_a_tighter_sum(x, a, MOST, &box, 1e-6);
+  agrees_with_a_tighter_sum(x, a, MOST, 6, &box, 1e-3);
+  agrees_with_a_tighter_sum(x, a, MOST, 6, &box, 1e-6);
 }
 
 /* A cloud in one corner of an open box, and one sphere far away: cells that hold nobody are not made. */
@@ -228,6 +245,7 @@ int main(void)
       cmocka_unit_test(one_sphere_has_hasimotos_correction),
       cmocka_unit_test(one_sphere_in_an_open_box_feels_nothing),
       cmocka_unit_test(spheres_at_one_point_and_larger_than_the_box),
+      cmocka_unit_test(a_box_as_thin_as_its_spheres),
       cmocka_unit_test(radii_of_one_to_a_hundred),
       cmocka_unit_test(a_cloud_in_a_corner),
       cmocka_unit_test(a_box_that_changes),

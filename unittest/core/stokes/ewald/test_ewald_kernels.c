@@ -109,7 +109,7 @@ static void spreading_and_interpolation_agree(void **state)
       places p;
       double first[6 * N], F[6 * N];
       const int width = terms == 3 || (terms == 4 && points % 2) ? 6 : 3;
-      sd_window_fit(points, 2.25 * points, 0, 1e-9, &w);
+      sd_window_fit(points, 2.25 * points, 0, 0.0, 1e-9, &w);
       for (int k = -1; k < 3; k++) {
         const sd_isa isa = k < 0 ? SD_ISA_PLAIN : sets[k];
         if (!sd_isa_supported(isa)) continue;
@@ -138,7 +138,7 @@ static void sums_over_points_of_a_window_are_integrals(void **state)
   for (int points = 4; points <= 16; points++) {
     sd_window w;
     const double beta = 2.25 * points, whole = sd_window_transform(points, beta, 0.0), theta = 1e-4;
-    sd_window_fit(points, beta, 2, 1e-9, &w);
+    sd_window_fit(points, beta, 2, 0.0, 1e-9, &w);
     for (double v = -1.0; v <= 1.0; v += 0.125) {
       double sum[3] = {0.0}, slope = 0.0;
       for (int k = 0; k < points; k++) {
@@ -158,6 +158,35 @@ static void sums_over_points_of_a_window_are_integrals(void **state)
   }
 }
 
+/* A bend adds to what a sphere on a point of the grid spreads of s^2, and takes as much from one between two points;
+ * not to the whole. */
+static void a_bend_of_a_window_is_opposite_between_points(void **state)
+{
+  (void) state;
+  enum { POINTS = 6 };
+  const double beta = 2.25 * POINTS, bend = 1e-4, place[] = {-1.0, -0.5, 0.0, 0.5};
+  double changed[4];
+  sd_window plain, bent;
+  sd_window_fit(POINTS, beta, 2, 0.0, 1e-9, &plain);
+  sd_window_fit(POINTS, beta, 2, bend, 1e-9, &bent);
+  for (int i = 0; i < 4; i++) {
+    double all = 0.0;
+    changed[i] = 0.0;
+    for (int k = 0; k < POINTS; k++) {
+      const double s = k + 1 - 0.5 * (place[i] + 1.0 + POINTS);
+      double more = 0.0;
+      for (int m = bent.degree; m >= 0; m--) more = more * place[i] + bent.coefficient[m][k] - plain.coefficient[m][k];
+      all += more;
+      changed[i] += more * s * s;
+    }
+    CHECK_NEAR(all, 0.0, 1e-12);
+  }
+  assert_true(changed[0] > 0.1 * bend);
+  CHECK_NEAR(changed[2], -changed[0], 1e-2 * changed[0]);
+  CHECK_NEAR(changed[1], 0.0, 1e-2 * changed[0]);
+  CHECK_NEAR(changed[3], 0.0, 1e-2 * changed[0]);
+}
+
 /* Of equal spheres with torques the second term is nothing, in a tilted box too. */
 static void three_terms_do_for_equal_spheres_with_torques(void **state)
 {
@@ -167,7 +196,7 @@ static void three_terms_do_for_equal_spheres_with_torques(void **state)
   const cloud c = make(7, 0);
   places p;
   sd_window w;
-  sd_window_fit(6, 2.25 * 6, 0, 1e-9, &w);
+  sd_window_fit(6, 2.25 * 6, 0, 0.0, 1e-9, &w);
   for (int k = 0; k < 2; k++) {
     brick[k] = calloc(numbers, sizeof(double));
     sd_spreading s = spheres_on_a_brick(&c, &p, &w, 4, 6);
@@ -264,7 +293,7 @@ static void windows_of_floats_are_those_of_doubles(void **state)
       const int width = terms >= 3 ? 6 : 3;
       sd_window w;
       places p;
-      sd_window_fit(points, 2.3 * points, 0, 1e-5, &w);
+      sd_window_fit(points, 2.3 * points, 0, 0.0, 1e-5, &w);
       sd_spreading s = spheres_on_a_brick(&c, &p, &w, terms, width);
       floats_are_as_doubles(&s, &c, width);
     }
@@ -282,7 +311,7 @@ static void points_side_by_side_are_spread_like_any(void **state)
     sd_ewald_runs runs = {0};
     int sphere[N];
     uint64_t seed = 9;
-    sd_window_fit(points, 2.25 * points, 0, 1e-5, &w);
+    sd_window_fit(points, 2.25 * points, 0, 0.0, 1e-5, &w);
     sd_spreading s = spheres_on_a_brick(&c, &p, &w, 1, 3);
     for (int i = 0; i < N; i++) {
       sphere[i] = i + (i >= N - 6); /* the last shell in two halves */
@@ -435,6 +464,7 @@ int main(void)
       cmocka_unit_test(near_parts_agree),
       cmocka_unit_test(spreading_and_interpolation_agree),
       cmocka_unit_test(sums_over_points_of_a_window_are_integrals),
+      cmocka_unit_test(a_bend_of_a_window_is_opposite_between_points),
       cmocka_unit_test(three_terms_do_for_equal_spheres_with_torques),
       cmocka_unit_test(near_parts_of_floats_are_those_of_doubles),
       cmocka_unit_test(windows_of_floats_are_those_of_doubles),

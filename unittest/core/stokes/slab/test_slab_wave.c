@@ -31,7 +31,7 @@ static void a_window_keeps_a_falling_wave(void **state)
   (void) state;
   sd_slab s = {.spacing = 0.7, .ewald = {.points = 9, .beta = 2.25 * 9, .a_ref = 0.0}};
   sd_window w;
-  sd_window_fit(s.ewald.points, s.ewald.beta, 0, 1e-9, &w);
+  sd_window_fit(s.ewald.points, s.ewald.beta, 0, 0.0, 1e-9, &w);
   for (double k = 0.1; k < 2.2; k += 0.4)
     for (double v = -0.9; v < 1.0; v += 0.3) {
       double sum = 0.0;

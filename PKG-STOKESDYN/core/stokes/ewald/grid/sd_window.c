@@ -34,8 +34,9 @@ static long double mean_square(int points, double beta)
 
 /* phi at all points of the sphere with v, times a constant or a parabola in s, the distance to the point, nearly 1: the
  * sums of phi, or of phi, phi s and phi s^2, are the integrals of these then.
- * With p and q, s and s^2 less what is not orthogonal, it has the parts 1, p and q that these sums give. */
-static void even_window(int points, double beta, int order, long double v, long double *phi)
+ * With p and q, s and s^2 less what is not orthogonal, it has the parts 1, p and q that these sums give; the bend has
+ * s^2 less its mean, so that the sum of phi stays. */
+static void even_window(int points, double beta, int order, double bend, long double v, long double *phi)
 {
   const long double whole = sd_window_transform(points, beta, 0.0), first = 0.5L * (1.0L - v - points);
   long double sum[5] = {0.0L};
@@ -47,22 +48,24 @@ static void even_window(int points, double beta, int order, long double v, long 
   const long double b = (sum[3] - 2.0L * a * sum[2] + a * a * sum[1]) / p2, g = p2 / sum[0];
   const long double c1 = -(a + b), c0 = a * b - g;
   const long double q2 = sum[4] + c1 * sum[3] + c0 * sum[2];
+  const long double bent = bend * cosl(2.0L * SD_PI * first) * whole / sum[0];
   const long double of_p = -a * whole / p2, of_q = (mean_square(points, beta) + c0) * whole / q2;
   for (int k = 0; k < points; k++) {
     const long double s = first + k;
-    phi[k] *= whole / sum[0] + (order == 0 ? 0.0L : of_p * (s - a) + of_q * (s * s + c1 * s + c0));
+    phi[k] *= whole / sum[0] + (order == 0 ? 0.0L : of_p * (s - a) + of_q * (s * s + c1 * s + c0)) +
+        bent * (s * s - sum[2] / sum[0]);
   }
 }
 
 /* Up to the highest degree that any point needs: beyond it all are below a part of the tolerance, which
  * second derivatives leave small. */
-void sd_window_fit(int points, double beta, int order, double tolerance, sd_window *w)
+void sd_window_fit(int points, double beta, int order, double bend, double tolerance, sd_window *w)
 {
   enum { NODES = SD_WINDOW_TERMS + 8 };
   long double phi[NODES][SD_WINDOW_MOST_POINTS], series[SD_WINDOW_MOST_POINTS][NODES];
   memset(w, 0, sizeof(*w));
   w->points = points;
-  for (int s = 0; s < NODES; s++) even_window(points, beta, order, sd_chebyshev_node(s, NODES), phi[s]);
+  for (int s = 0; s < NODES; s++) even_window(points, beta, order, bend, sd_chebyshev_node(s, NODES), phi[s]);
   for (int k = 0; k < points; k++) {
     long double sample[NODES];
     for (int s = 0; s < NODES; s++) sample[s] = phi[s][k];

@@ -30,8 +30,9 @@ typedef struct {
 } sd_window;
 
 /* Polynomials as long as the tolerance needs. order: 0, a constant; 2, a parabola, by which windows that are
- * differentiated twice would mistake short waves more. */
-void sd_window_fit(int points, double beta, int order, double tolerance, sd_window *w);
+ * differentiated twice would mistake short waves more. bend: phi of a sphere that stands on a point of the
+ * grid has bend s^2 phi more, less a constant; half a spacing further as much less. */
+void sd_window_fit(int points, double beta, int order, double bend, double tolerance, sd_window *w);
 
 /* sum over the points of phi exp(-i theta s), theta = k h, as an integral: its transform, in grid
  * spacings */

@@ -340,13 +340,12 @@ static sd_status lay_planes(sd_ewald *e, int across, double span)
 
 /* Nothing makes up for what the range of images cuts off, so that it is longer than that of the free part, and
  * more where it is not much shorter than the gap. Found by errors; see sd_slab.h. */
-static const double IMAGES_FARTHER = 1.3, NARROW = 0.8, IMAGES_IN_NARROW = 1.5;
+static const double IMAGES_FARTHER = 1.3, IMAGES_IN_NARROW = 1.5;
 
 static void split_images(sd_ewald *e, const splitting *by)
 {
-  const int narrow = by->gap > 0.0 && e->range > NARROW * by->gap;
   e->images.band = e->band;
-  e->images.range = (narrow ? IMAGES_IN_NARROW : IMAGES_FARTHER) * e->range;
+  e->images.range = (sd_splitting_narrow(e, by) ? IMAGES_IN_NARROW : IMAGES_FARTHER) * e->range;
   e->reach = e->images.range;
 }
 

@@ -43,9 +43,9 @@ typedef struct {
    * twice as large; no spacing is larger than this one, which an open box has */
   int grid[3];
   double spacing;
-  /* the window: so many grid points each way, and its parameter (Kaiser-Bessel) */
+  /* the window: so many grid points each way, its parameter (Kaiser-Bessel) and its bend (sd_window.h) */
   int points;
-  double beta;
+  double beta, bend;
   /* what was asked for: rms error of U over rms of F/(6 pi eta a) */
   double tolerance;
   /* xi of a smoother splitting, whose waves these spheres have too: this one's are less by them

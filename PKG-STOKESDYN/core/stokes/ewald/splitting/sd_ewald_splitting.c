@@ -236,6 +236,12 @@ double sd_splitting_common_flow(const sd_ewald *e)
   return 17.0 / alias * e->count * e->a_ref * e->spacing / (edge * edge);
 }
 
+int sd_splitting_narrow(const sd_ewald *e, const splitting *by)
+{
+  const double most = 0.8;
+  return by->gap > 0.0 && e->range > most * by->gap;
+}
+
 /* --- spheres on one plane --- */
 
 /* sd_window_transform, times a constant */
@@ -264,42 +270,88 @@ static double bend_of_window(const sd_ewald *e, double theta)
 }
 
 /* Where N equal spheres under equal forces stand on one plane of area S, waves across it add up in all of them, and so
- * does what both windows mistake of these, w: over F/(6 pi eta a) it is
- *   12 a N/S sum H/k^2 (aliases(kh) - c w(kh) - d w''(kh))/w(kh) dk,   k = dk, 2 dk ..., dk = 2 pi over the period
- * c and d so that the bracket is 0 at k = 0, and for a parabola its second derivative, too; H of sd_radial.h. */
-static double mistaken_of_plane(const sd_ewald *e, double spheres_over_area, double h, double first, double dk)
+ * does what both windows mistake of these, w: over F/(6 pi eta a) it is at most N/S times
+ *   12 a sum H/k^2 (aliases(kh) - c w(kh) - d w''(kh))/w(kh) dk,   k = dk, 2 dk ..., dk = 2 pi over the period
+ * c so that the bracket is 0 at k = 0, and d that of a parabola, with which its second derivative is 0 there too, or
+ * 0, and the bend more; H of sd_radial.h. If they are spread evenly over a thickness, (sin x)/x times as much, x half of
+ * k times that. */
+static double mistaken_of_layer(const sd_ewald *e, double bend, double thick, double h, double first, double dk)
 {
   const double a = e->largest, K = e->band;
   const double w0 = wave_of_window(e, 0.0), w2 = bend_of_window(e, 0.0), w4 = bend_at(e, 0.0, bend_of_window);
   const double a0 = aliases(e, 0.0), a2 = bend_at(e, 0.0, aliases);
   const double parabola = e->slab.planes == 0 ? 1.0 : 0.0; /* sd_ewald_waves.c */
-  const double d = parabola * (a2 * w0 - a0 * w2) / (w4 * w0 - w2 * w2), c = (a0 - d * w2) / w0;
+  const double d = parabola * (a2 * w0 - a0 * w2) / (w4 * w0 - w2 * w2) + bend, c = (a0 - d * w2) / w0;
   double sum = 0.0;
   for (double k = first; k < K; k += dk) {
     const double k2 = k * k, theta = k * h, w = wave_of_window(e, theta);
     const double x = e->range * k2 / (K + sqrt(K * K - k2)), H = (1.0 + x - a * a * k2 / 3.0) * exp(-x);
-    sum += H / k2 * (aliases(e, theta) - c * w - d * bend_of_window(e, theta)) / w * dk;
+    const double half = 0.5 * k * thick, spread = half < 1e-6 ? 1.0 : sin(half) / half;
+    sum += spread * H / k2 * (aliases(e, theta) - c * w - d * bend_of_window(e, theta)) / w * dk;
   }
-  return 12.0 * a * spheres_over_area * fabs(sum);
+  return 12.0 * a * sum;
 }
 
-/* The largest of planes along two edges of the box, with all spheres or as many as have room there without overlap.
- * Many waves are an integral. */
-static double most_on_planes(const sd_ewald *e)
+/* That of planes along two edges of the box, with all spheres or as many as have room there without overlap: mistaken
+ * [3] with no bend, and what a bend of 1 adds to it. Many waves are an integral. */
+static void mistaken_of_planes(const sd_ewald *e, double *mistaken, double *by_bend)
 {
   enum { MANY = 40 };
   const double densest = 1.0 / (sqrt(12.0) * e->largest * e->largest);
-  double wave[3][3], most = 0.0;
+  double wave[3][3];
   sd_ewald_reciprocal(&e->box, wave);
   for (int d = 0; d < 3; d++) {
     const double q = hypot(wave[d][0], hypot(wave[d][1], wave[d][2])), period = 2.0 * SD_PI / q;
     const double spheres = fmin(densest, e->count * period / sd_ewald_volume(&e->box));
     const double h = e->box.periodic ? period / e->grid[d] : e->spacing;
     const int few = e->box.periodic && e->band < MANY * q;
-    const double dk = few ? q : e->band / MANY;
-    most = fmax(most, mistaken_of_plane(e, spheres, h, few ? q : 0.5 * dk, dk));
+    const double dk = few ? q : e->band / MANY, first = few ? q : 0.5 * dk;
+    mistaken[d] = spheres * mistaken_of_layer(e, 0.0, 0.0, h, first, dk);
+    by_bend[d] = spheres * mistaken_of_layer(e, 1.0, 0.0, h, first, dk) - mistaken[d];
   }
+}
+
+static double most_with(const double *mistaken, const double *by_bend, double bend)
+{
+  double most = 0.0;
+  for (int d = 0; d < 3; d++) most = fmax(most, fabs(mistaken[d] + bend * by_bend[d]));
   return most;
+}
+
+/* Takes the bend for which the largest of the three errors is least. In two directions they are then opposite, or one
+ * is 0; where all spacings are alike, all three are 0. A box so thin that no wave across it is kept adds nothing. */
+static void bend_window(sd_ewald *e)
+{
+  double mistaken[3], by_bend[3];
+  mistaken_of_planes(e, mistaken, by_bend);
+  double least = most_with(mistaken, by_bend, 0.0);
+  for (int k = 0; k < 9; k++) {
+    const double both = by_bend[k / 3] + by_bend[k % 3];
+    if (both == 0.0) continue;
+    const double bend = -(mistaken[k / 3] + mistaken[k % 3]) / both, left = most_with(mistaken, by_bend, bend);
+    if (!(left < least)) continue;
+    least = left;
+    e->bend = bend;
+  }
+}
+
+static double most_on_planes(const sd_ewald *e)
+{
+  double mistaken[3], by_bend[3];
+  mistaken_of_planes(e, mistaken, by_bend);
+  return most_with(mistaken, by_bend, 0.0);
+}
+
+/* An open box stands close around its spheres, the largest's radius beyond them or more, so that its narrowest edge tells
+ * whether they are on one plane. Across many spacings the bend is next to none: there the parabola is what counts, for
+ * the flow that all spheres have in common. */
+static void bend_window_across(sd_ewald *e)
+{
+  enum { MANY = 80 };
+  const double *L = e->box.edge, thick = fmax(0.0, fmin(L[0], fmin(L[1], L[2])) - 2.0 * e->largest);
+  if (thick > 0.5 * MANY * e->spacing) return;
+  const double dk = e->band / MANY, plain = mistaken_of_layer(e, 0.0, thick, e->spacing, 0.5 * dk, dk);
+  e->bend = -plain / (mistaken_of_layer(e, 1.0, thick, e->spacing, 0.5 * dk, dk) - plain);
 }
 
 /* Errors of random forces add to it. A smaller beta mistakes short waves less and long ones more, whose signs differ,
@@ -307,9 +359,8 @@ static double most_on_planes(const sd_ewald *e)
  * no more than at the tightest tolerances, the one that leaves least. */
 static const double ON_A_PLANE = 0.5, AT_THE_ENDS = 0.25;
 
-void sd_splitting_fit_planes(sd_ewald *e, const splitting *by)
+static void lower_beta(sd_ewald *e)
 {
-  if (!by->equal || e->a_ref != e->largest) return;
   double least = most_on_planes(e);
   if (least <= ON_A_PLANE * e->tolerance) return;
   sd_ewald other;
@@ -322,4 +373,15 @@ void sd_splitting_fit_planes(sd_ewald *e, const splitting *by)
     least = left;
     e->beta = other.beta;
   }
+}
+
+/* Two walls that are near multiply what a bend makes of waves that fall off across them. */
+void sd_splitting_fit_planes(sd_ewald *e, const splitting *by)
+{
+  if (!by->equal || e->a_ref != e->largest) return;
+  if (e->box.periodic && !sd_splitting_narrow(e, by))
+    bend_window(e);
+  else
+    lower_beta(e);
+  if (!e->box.periodic) bend_window_across(e);
 }

@@ -52,8 +52,12 @@ int sd_splitting_points(double t);
 int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, double t);
 double sd_splitting_beta(const splitting *by);
 
-/* Of e, whose grid is laid: a smaller beta where equal spheres on one plane, as many as have room there,
- * would have more than half of the tolerance in common. Points, grid and range stay. */
+/* Between two walls: is the range not much shorter than the gap? */
+int sd_splitting_narrow(const sd_ewald *e, const splitting *by);
+
+/* Of e, whose grid is laid and whose waves end at a band: the bend of the window and a smaller beta with
+ * which equal spheres on one plane, which all have the same place on the grid across it, mistake least under
+ * equal forces. Points, grid and range stay. */
 void sd_splitting_fit_planes(sd_ewald *e, const splitting *by);
 
 /* Where the rule asks for six points: would five do, and what came of these, is it within the tolerance? */

@@ -142,7 +142,7 @@ sd_status sd_ewald_waves_create(sd_ewald_waves *w, const sd_ewald *e,
   w->kernels = kernels;
   w->width = width;
   turn_frame(w, turn);
-  sd_window_fit(e->points, e->beta, order_of_window(e), e->tolerance, &w->window);
+  sd_window_fit(e->points, e->beta, order_of_window(e), e->bend, e->tolerance, &w->window);
   return make_grid(w, world);
 }
 
