@@ -92,11 +92,11 @@ std::vector<double> FixSphGrains::rows_of_grains(double **vectors) const
   return rows;
 }
 
-std::vector<double> FixSphGrains::rows_of_atoms(double **vectors, size_t n) const
+std::vector<double> FixSphGrains::velocities() const
 {
-  std::vector<double> rows(3 * (size_t) (atom->nlocal + atom->nghost) + 1, 0.0);
-  for (size_t i = 0; i < n; i++) std::copy_n(vectors[i], 3, &rows[3 * i]);
-  return rows;
+  std::vector<double> v(3 * (size_t) (atom->nlocal + atom->nghost) + 1, 0.0);
+  if (v.size() > 1) std::copy_n(atom->v[0], v.size() - 1, v.data());
+  return v;
 }
 
 const double *FixSphGrains::mixture(const double *v)
@@ -214,16 +214,16 @@ void FixSphGrains::stresses(std::vector<double> &F)
 /* Of the water at the places of grains, and of these */
 FixSphGrains::Slip FixSphGrains::slip_of_now()
 {
-  return {around.mean_of(rows_of_atoms(atom->v, atom->nlocal + atom->nghost), 3), rows_of_grains(atom->v)};
+  return {around.mean_of(velocities(), 3), rows_of_grains(atom->v)};
 }
 
 /* That at the end of the step, which all forces but drag make: those of atoms, and the stresses F of grains */
 FixSphGrains::Slip FixSphGrains::slip_without_drag(const std::vector<double> &F)
 {
   const double dt = update->dt;    // at a setup as well: that force begins the first step
-  const std::vector<double> on_water = rows_of_atoms(atom->f, atom->nlocal), on_grains = rows_of_grains(atom->f);
-  std::vector<double> water = rows_of_atoms(atom->v, atom->nlocal);
-  sd_sph_grain_push(atom->nlocal, dt, on_water.data(), nullptr, atom->rmass, water.data());
+  const std::vector<double> on_grains = rows_of_grains(atom->f);
+  std::vector<double> water = velocities();
+  sd_sph_grain_push(atom->nlocal, dt, atom->nlocal ? atom->f[0] : nullptr, nullptr, atom->rmass, water.data());
   forward(water.data(), 3);
   Slip slip = {around.mean_of(water, 3), rows_of_grains(atom->v)};
   sd_sph_grain_push((int) around.grains.size(), dt, on_grains.data(), F.data(), M.data(), slip.grains.data());

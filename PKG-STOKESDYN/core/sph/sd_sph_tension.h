@@ -138,8 +138,8 @@ void sd_sph_film_curvatures(const sd_sph_film *f, const sd_sph_film_rows *rows, 
 void sd_sph_film_means(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin,
                        const double *k, double *mean);
 
-/* ks [n] of kappa, <kappa> and <<kappa>>, in the place of once or twice: those that are far from the surface keep
- * their 0. */
+/* ks [n] of kappa, <kappa> and <<kappa>>, in the place of once or twice: those that are far from the
+ * surface keep their 0. */
 void sd_sph_film_sharpen(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *kappa,
                          const double *once, const double *twice, double *ks);
 

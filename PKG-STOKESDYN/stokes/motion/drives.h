@@ -49,8 +49,8 @@ class Drives : protected LAMMPS_NS::Pointers {
   bool stays(int i) const { return atom->mask[i] & (held.bit | pinned.bit); }
   bool is_moved(int i) const { return is_held(i) && (atom->mask[i] & moved_bits); }
   bool moves_any() const { return moved_bits != 0; }
-  /* When a run begins, and in its first step, when fix move has moved them: errors if it leaves one of them free in
-   * a direction (NULL), in which force and mass then move it without the fluid */
+  /* When a run begins, and in its first step, when fix move has moved them: errors if it leaves one of them
+   * free in a direction (NULL) in which a force then moves it without the fluid */
   void note_start();
   void check_moved();
   /* Is anything known of anybody? What is of atom i, and that of its velocity and angular velocity [6] */

@@ -67,7 +67,7 @@ class Noise : protected LAMMPS_NS::Pointers {
 
   /* Once: what has been drawn, and how far it moves the smallest sphere, 1/drag its mobility */
   void announce(const Hydrodynamics &hydro, double smallest, double drag) const;
-  /* last_step: for which numbers were drawn before this fix was given, as a restart file has it; below 0: none */
+  /* last_step: for which numbers were drawn before this fix was given, by a restart file; below 0: none */
   void begin(double last_step);
   /* A step begins. Once: have its random numbers been drawn before? */
   void warn_of_repeats();

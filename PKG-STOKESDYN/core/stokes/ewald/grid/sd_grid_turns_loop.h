@@ -47,10 +47,10 @@ static void copy_depths(const sd_grid *g, int c, int x, real *message, int to_pl
   }
 }
 
-/* The turn in a column, from x to y planes: from each rank to each a box of wave numbers [3][its
- * x][its y][z that are left]. Rows y of our plane x: those of other ranks from the slab to the message; or all of
- * them to `beside`, from the slab or from the message, with zeros for what is not left. What is transformed next is
- * in the cache then, and rows that have come in are written once. */
+/* The turn in a column, from x to y planes: from each rank to each a box of wave numbers [3][its x][its y][z
+ * that are left]. Rows y of our plane x: those of other ranks from the slab to the message; or all of them
+ * to `beside`, from the slab or from the message, with zeros for what is not left. What is transformed next
+ * is in the cache then, and rows that have come in are written once. */
 static void copy_rows(const sd_grid *g, int c, int x, real *message, int to_beside)
 {
   const long planes = sd_grid_own(g, SD_SHARED_X), depth = 2L * sd_grid_own(g, SD_SHARED_Z);
