@@ -103,6 +103,31 @@ def test_period_of_the_doublet_in_shear(simulation):
     assert np.abs(axis[1]) < 1e-10
 
 
+@pytest.mark.parametrize("words, growth", [("cut_off_distance inf multiblob 12", 1.6),
+                                           ("cut_off_distance inf multiblob 42", 0.08),
+                                           ("cut_off_distance inf multiblob 42 half", 0.0),
+                                           ("clumps_only yes shell 12", 0.0)])
+def test_orbits_of_a_doublet_in_shear_are_closed_as_the_page_says(simulation, words, growth):
+    """The orbit constant, by the axis as it crosses the plane of vorticity and gradient: its growth per half turn in
+    per cent, over four whole turns"""
+    dt, axis = 0.02, np.array((0.466, -0.396, 0.791))
+    sim = simulation(Spheres(np.outer((-1, 1), axis / np.linalg.norm(axis)), molecule=1),
+                     f"{words} visc 1 rigid_clumps yes fluid_velocity v_u 0 0", fix=False, box=[(-9.0, 9.0)] * 3,
+                     comm=COMM, dt=dt, before_pair="variable u atom z").commands(FIX).run(0)
+    constants, before = [], None
+    for _ in range(700):
+        x = sim.run(5, "pre no post no").x
+        p = (x[1] - x[0]) / 2
+        if before is not None and before[0] * p[0] < 0:
+            y = (before[1] * p[0] - p[1] * before[0]) / (p[0] - before[0])
+            constants.append(np.sqrt(1 / y**2 - 1))
+        before = p
+    assert len(constants) >= 8
+    half_turns = len(constants) - 2 + len(constants) % 2
+    found = 100 * ((constants[half_turns] / constants[0])**(1 / half_turns) - 1)
+    assert found == pytest.approx(growth, rel=0.1, abs=0.01)
+
+
 def test_shapes_stay_rigid(simulation):
     spheres = chains(2, 3, side=6.0)
     sim = fall(simulation, spheres, CLUMPS.replace("cut_off_distance inf", "clumps_only yes") +
