@@ -1,5 +1,5 @@
-# Removes the files of the last installation, and folders that are empty without them:  cmake -D MANIFEST=FILE -P
-# uninstall.cmake
+# Removes the files of the last installation, what Python has compiled of them, and folders that are empty without
+# them:  cmake -D MANIFEST=FILE -P uninstall.cmake
 cmake_minimum_required(VERSION 3.20)
 if(NOT EXISTS "${MANIFEST}")
   message(FATAL_ERROR "uninstall: there is no ${MANIFEST}; nothing was installed from this build folder")
@@ -14,6 +14,14 @@ foreach(file ${files})
     math(EXPR removed "${removed} + 1")
   endif()
   get_filename_component(folder "${file}" DIRECTORY)
+  if(file MATCHES "\\.py$")
+    get_filename_component(module "${file}" NAME_WE)
+    set(folder "${folder}/__pycache__")
+    file(GLOB compiled "${folder}/${module}.*.pyc")
+    if(compiled)
+      file(REMOVE ${compiled})
+    endif()
+  endif()
   # a folder, and each above it
   while(NOT folder IN_LIST folders AND NOT folder STREQUAL "/" AND NOT folder STREQUAL "")
     list(APPEND folders "${folder}")

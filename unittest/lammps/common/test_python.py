@@ -164,6 +164,8 @@ def test_uninstall_leaves_what_is_not_its_own(tmp_path):
     kept = before.read_bytes() if before.exists() else None
     subprocess.run(["cmake", "--install", BUILD, "--prefix", there], check=True, stdout=subprocess.DEVNULL)
     assert (there / "share/stokesdyn/env.sh").exists() and (there / "lib/lammps/plugins/stokesdynplugin.so").exists()
+    # as Python does where a module is imported: a folder that is left of it could still be imported, without content
+    subprocess.run([sys.executable, "-m", "compileall", "-q", there / "lib"], check=True)
     shutil.move(before, tmp_path / "manifest.txt")
     if kept:
         before.write_bytes(kept)
