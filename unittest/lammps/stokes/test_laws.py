@@ -1,0 +1,66 @@
+"""Laws that every scene without inertia obeys, whatever its model and its box: motions are linear in loads, the work
+that loads of one scene do on motions of another is mutual, it is dissipated, and two cells of a lattice are one."""
+import numpy as np
+import pytest
+
+from system import Spheres
+from test_multiblob import MOVE, pull
+
+TIGHT = "cut_off_distance inf visc 1.3 relative_tolerance 1e-11 max_iter 900 far_field_tolerance 1e-10 lubrication yes"
+# A clump of three, a sphere in its crevice and a free one
+X, MOLECULE = np.array([(0, 0, 0), (1.8, 0, 0), (0, 1.8, 0), (0.2, 0.3, 2.25), (-2.3, -2.3, 1.2)]), [1, 1, 1, 0, 0]
+CELL = [(-4.0, 5.0), (-4.0, 5.5), (-1.5, 3.6)]
+BOXES = {"open": ("", {}), "periodic": ("", dict(boundary="p p p", box=CELL)),
+         "tilted": ("", dict(boundary="p p p", box=CELL, tilt=(2.0, -1.5, 1.0))), "wall": ("wall zlo -1.3", {}),
+         "floor": ("wall zlo -1.3", dict(boundary="p p f", box=CELL)),
+         "slit": ("wall zlo -1.3 zhi 3.4", dict(boundary="p p f", box=CELL))}
+
+
+@pytest.mark.parametrize("model", ["multiblob 12", "rotation yes"])
+@pytest.mark.parametrize("where", BOXES)
+def test_motions_are_linear_mutual_and_dissipate_the_work(simulation, where, model):
+    words, box = BOXES[where]
+    if where in ("floor", "slit"):
+        model = "multiblob 42" if model == "rotation yes" else model     # there spheres that turn are multiblobs
+    rng = np.random.default_rng(9)
+
+    def answer(F, T):
+        """Velocities and spins of all spheres under forces on all and a torque on the fourth, and the dissipation"""
+        sim = simulation(Spheres(X, molecule=MOLECULE), f"{TIGHT} {model} rigid_clumps yes {words}", fix=False, dt=1e-9,
+                         comm="neigh_modify exclude molecule/intra all", **box)
+        torque = " ".join(map(repr, map(float, T[3])))
+        sim.commands(pull(F) + ["group turned id 4", f"{MOVE} torque turned {torque}"]).run()
+        return np.hstack([sim.v, sim.atom("omega")]), sim.fix_scalar("move")
+
+    loads = rng.normal(size=(2, 5, 6))
+    loads[:, [0, 1, 2, 4], 3:] = 0
+    (a, power), (b, _) = (answer(load[:, :3], load[:, 3:]) for load in loads)
+    both = loads[0] + 2 * loads[1]
+    c = answer(both[:, :3], both[:, 3:])[0]
+    assert np.abs(c - a - 2 * b).max() < 1e-9 * np.abs(c).max()
+    assert abs((a * loads[1]).sum() - (b * loads[0]).sum()) < 1e-9 * power
+    assert (a * loads[0]).sum() == pytest.approx(power, rel=1e-12)
+
+
+@pytest.mark.parametrize("model", ["multiblob 12", "rotation yes"])
+@pytest.mark.parametrize("tilt", [None, (1.5, -1.0, 2.0)])
+def test_two_cells_of_a_lattice_are_one(simulation, tilt, model):
+    H = np.diag((7.3, 8.6, 6.7))
+    H[1, 0], H[2, 0], H[2, 1] = tilt or (0, 0, 0)
+    x = np.array([(0.5, 0.4, 0.3), (2.3, 1.6, 0.9), (5.0, 4.0, 1.0), (3.0, 5.0, 4.0), (6.0, 1.0, 4.5)])
+    F = np.random.default_rng(5).normal(size=(5, 3))
+
+    def fallen(cells, axis):
+        edges = np.diag((1.0, 1.0, 1.0))
+        edges[axis, axis] = cells
+        box = edges @ H
+        sim = simulation(Spheres(np.vstack([x + k * H[axis] for k in range(cells)])), f"{TIGHT} {model}", fix=False,
+                         boundary="p p p", box=[(0.0, float(box[d, d])) for d in range(3)], dt=1e-9,
+                         tilt=[float(c) for c in (box[1, 0], box[2, 0], box[2, 1])] if tilt else None)
+        sim.commands(pull(np.vstack([F] * cells)) + [MOVE]).run()
+        return np.hstack([sim.v, sim.atom("omega")])
+
+    one = fallen(1, 0)
+    for axis in range(3):
+        two = fallen(2, axis)
+        assert np.abs(two - np.vstack([one, one])).max() < 2e-9 * np.abs(one).max()
