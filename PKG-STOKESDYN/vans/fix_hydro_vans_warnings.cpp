@@ -192,8 +192,8 @@ void FixHydroVans::tell_sizes()
                    "factor of two: use classes yes, or rules consistent");
 }
 
-/* Drag acts with the velocity of the step before: beyond 2/rate a step overshoots and grows. Looked
- * at when a run begins and then every 100 steps at most. */
+/* Drag acts with the velocity of the step before, added mass with its acceleration: beyond 2/rate a
+ * step overshoots and grows. Looked at when a run begins and then every 100 steps at most. */
 void FixHydroVans::tell_stiff()
 {
   if (stream.told.has(VansTold::STIFF) || !set.has_grains()) return;
@@ -214,9 +214,17 @@ void FixHydroVans::tell_stiff()
   if (!(largest.rate * update->dt > 1.0)) return;
   double tag = stiffest < 0 ? 0.0 : (double) atom->tag[stiffest];
   MPI_Bcast(&tag, 1, MPI_DOUBLE, largest.rank, world);
+  const std::string which = std::to_string((bigint) tag);
+  if (largest.rate == HUGE_VAL) {
+    stream.told.warn(VansTold::STIFF, "keyword added_mass: atom " + which + " is not heavier than " +
+                                          text(set.law.added_mass) + " times the water in its place: its velocity "
+                                          "grows without bound, however short the time step; use a smaller "
+                                          "added_mass, or leave it out");
+    return;
+  }
   stream.told.warn(VansTold::STIFF,
-                   "the time step " + text(update->dt) + " is too long for the drag on atom " +
-                       std::to_string((bigint) tag) + ", which changes its velocity at the rate " +
-                       text(largest.rate) + ": take at most " + text(1.0 / largest.rate) + "; beyond " +
-                       text(2.0 / largest.rate) + " the velocity grows without bound");
+                   "the time step " + text(update->dt) + " is too long for the drag on atom " + which +
+                       ", which changes its velocity at the rate " + text(largest.rate) + ": take at most " +
+                       text(1.0 / largest.rate) + "; beyond " + text(2.0 / largest.rate) +
+                       " the velocity grows without bound");
 }

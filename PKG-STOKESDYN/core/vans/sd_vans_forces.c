@@ -102,8 +102,9 @@ double sd_vans_stiffest(const sd_vans_ambient *stream, const sd_vans_grains *gra
     double w[3];
     const double speed = velocity_past(grains, i, water, w),
                  share = grains->weight ? grains->weight[i] : 1.0;
-    const double rate = share / mass[i] *
-        sd_drag_slope(law->drag, law->rho, law->eta, grains->a[i], water.hindrance, speed);
+    const double slope = share * sd_drag_slope(law->drag, law->rho, law->eta, grains->a[i], water.hindrance, speed);
+    const double left = mass[i] - share * law->added_mass * law->rho * sd_sphere_volume(grains->a[i]),
+                 rate = left > 0.0 ? slope / left : HUGE_VAL;
     if (rate > largest) {
       largest = rate;
       *stiffest = i;

@@ -137,9 +137,11 @@ static inline void sd_vans_motion_step(sd_vans_motion *m, const double v[3], dou
   m->span = 1.0;
 }
 
-/* The largest rate at which drag takes the velocity of a grain to that of the water, dF/dw/m over
- * the grains that take part, and which grain: a step of velocity Verlet must be shorter than
- * 2/rate. mass [n]. 0 if there is none. */
+/* The largest rate of the motion of a grain towards the water, and which grain: a step of velocity Verlet
+ * must be shorter than 2/rate. Added mass has the acceleration of the step before, and so leaves less of the
+ * grain's own inertia: with s = dF/dw dt/m and r = C rho V/m the velocities of steps have
+ *   v'' = (1 - s - r) v' + r v,  stable for r < 1 and s < 2 (1 - r):  rate = dF/dw/(m - C rho V)
+ * HUGE_VAL where that is nothing: no step is short enough. mass [n]. 0 if no grain takes part. */
 double sd_vans_stiffest(const sd_vans_ambient *stream, const sd_vans_grains *grains, const double *mass,
                         int *stiffest);
 

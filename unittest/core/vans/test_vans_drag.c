@@ -246,6 +246,50 @@ static void fall_speed_balances_weight_and_drag(void **state)
       }
 }
 
+/* Steps of velocity Verlet in oil: the speed of a grain of this density after 1500 steps of dt, over that before. */
+static double speed_left(double density, double C, double dt)
+{
+  const double U[3] = {0}, hindrance[2] = {1, 1}, edge[3] = {0, 1, 2}, x[3] = {0.1, 0.2, 0.5}, a = 0.003,
+               mass = density * 4.0 / 3.0 * SD_PI * a * a * a;
+  const sd_vans_mesh mesh = {2, 0, 1, edge};
+  const sd_vans_force_law law = {.rho = RHO, .eta = 0.3, .added_mass = C};
+  const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
+  double v[3] = {1e-9, 0, 0}, F[3], acceleration[3] = {0};
+  sd_vans_motion motion = {{0}, 0};
+  sd_vans_motion_begin(&motion, v);
+  for (int k = 0; k < 1500; k++) {
+    if (k) sd_vans_motion_step(&motion, v, dt, acceleration);
+    sd_vans_forces(&stream, &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = &a, .acceleration = acceleration}, F, NULL);
+    v[0] += F[0] / mass * dt;
+  }
+  return fabs(v[0]) / 1e-9;
+}
+
+/* What is left of the inertia limits the step, and below C times the water's density there is no step. */
+static void added_mass_shortens_the_longest_step(void **state)
+{
+  (void) state;
+  const double U[3] = {0}, hindrance[2] = {1, 1}, edge[3] = {0, 1, 2}, x[3] = {0.1, 0.2, 0.5}, v[3] = {1e-9, 0, 0},
+               a = 0.003, density[4] = {2500, 1050, 700, 600};
+  const sd_vans_mesh mesh = {2, 0, 1, edge};
+  for (int k = 0; k < 8; k++) {
+    const sd_vans_force_law law = {.rho = RHO, .eta = 0.3, .added_mass = k < 4 ? 0.5 : 0.0};
+    const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
+    const double mass = density[k % 4] * 4.0 / 3.0 * SD_PI * a * a * a;
+    int which = -1;
+    const double rate = sd_vans_stiffest(&stream, &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = &a}, &mass, &which);
+    assert_int_equal(which, 0);
+    assert_true(speed_left(density[k % 4], law.added_mass, 1.95 / rate) < 1.0);
+    assert_false(speed_left(density[k % 4], law.added_mass, 2.05 / rate) < 1.0);
+  }
+  const double light = 490 * 4.0 / 3.0 * SD_PI * a * a * a;
+  const sd_vans_force_law law = {.rho = RHO, .eta = 0.3, .added_mass = 0.5};
+  const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
+  int which = -1;
+  assert_true(isinf(
+      sd_vans_stiffest(&stream, &(sd_vans_grains){.n = 1, .x = x, .v = v, .a = &a}, &light, &which)));
+}
+
 /* ten Cate et al. 2002: a sphere of 15 mm, 1120 kg/m3, in four oils, Re 1.5 to 32. Their fits by Clift & Gauvin,
  * 0.0409 0.0635 0.0939 0.1289 m/s, are those of brown_lawler to 1 %; the default law is for larger Re. */
 static void a_sphere_falls_in_oil_as_measured(void **state)
@@ -277,6 +321,7 @@ int main(void)
       cmocka_unit_test(a_core_may_have_any_number_of_neighbours),
       cmocka_unit_test(rising_water_lifts_a_grain),
       cmocka_unit_test(fall_speed_balances_weight_and_drag),
+      cmocka_unit_test(added_mass_shortens_the_longest_step),
       cmocka_unit_test(a_sphere_falls_in_oil_as_measured),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -107,6 +107,11 @@ run 1
     limit = 2650e-6 / (18.3 * 10)
     assert f"take at most {limit:.6g}" in run_lmp(tmp_path, script.format(2e-5)).stdout
     assert "take at most" not in run_lmp(tmp_path, script.format(1e-5)).stdout
+    light = script.replace("stream rest", "stream rest added_mass 0.5")     # of 600 kg/m3 of water: leaves 3/4 of it
+    assert f"take at most {2050 / 2650 * limit:.6g}" in run_lmp(tmp_path, light.format(1.2e-5)).stdout
+    none = light.replace("density 2650", "density 590")
+    assert "keyword added_mass: atom 1 is not heavier than 0.5 times the water" in run_lmp(
+        tmp_path, none.format(1e-9)).stdout
 
 
 def test_spheres_of_sand_fall_as_measured():
