@@ -40,6 +40,7 @@ void VansStream::save(NamedState &state)
   state.put("surface", {(double) wet.ncell, drive});
   state.put("wet", wet_edge);
   state.put("averaged", averaged);
+  state.put("classes_averaged", classes_averaged);
   state.put("density_known", density_known);
   state.put("radius", fluid.radius);
   state.put("class_radii", class_radii);
@@ -87,7 +88,7 @@ void VansStream::load(const NamedState &state)
   if (set.radius == 0.0) fluid.radius = state.get("radius", 0.0);
   set_classes(state.get("class_radii"), state.get("class_limits"), state.get("class_volumes"));
   state.get(set.voice.lmp->world, saved());
-  classes_averaged = true;
+  classes_averaged = state.get("classes_averaged", 1.0) != 0.0;
   load_surface(state);
   const size_t N = ncell();
   const auto history = state.get("phi_history");

@@ -178,6 +178,27 @@ def test_classes_that_are_new_in_a_run_have_averages_at_its_start(classes):
 
 
 @pytest.mark.parametrize("classes", ["yes", "3"])
+def test_a_restart_file_with_new_classes_goes_on_with_their_averages(tmp_path, classes):
+    """A radius that came after the last run: whoever reads the file averages as whoever wrote it."""
+    fix = f"fix h all hydro/vans 10 mesh 80 0.0006 0 fluid 1000 0.001 gravity 0.5 0 -9.8 felt volume classes {classes}"
+    s = Scene()
+    s.spheres([[0.01, 0.01, 0.004 * k] for k in range(1, 6)], np.full((5, 3), [0.1, 0, 0]),
+              [0.001, 0.0012, 0.0012, 0.0014, 0.001])
+    s.do(fix, "run 15", "create_atoms 1 single 0.015 0.005 0.03", "set atom 6 diameter 0.004 density 2500 vx 0.1",
+         f"write_restart {tmp_path}/half", "run 0")
+    here, count = (s.atoms("f_h"), s.column("phi", 80)), 4 if classes == "yes" else 3
+    transport = of_classes(s, "h", count)[:, 2]
+    s.close()
+    s = Scene.of(f"plugin load stokesdynplugin.so\nread_restart {tmp_path}/half\npair_style zero 0.01\n"
+                 f"pair_coeff * *\n{fix}\nrun 0")
+    there, again = (s.atoms("f_h"), s.column("phi", 80)), of_classes(s, "h", count)[:, 2]
+    s.close()
+    assert transport[-1] > 0 and np.abs(again / transport - 1).max() < 1e-12
+    for one, other in zip(here, there):
+        assert np.abs(one - other).max() < 1e-12 * np.abs(one).max()
+
+
+@pytest.mark.parametrize("classes", ["yes", "3"])
 def test_a_run_that_begins_without_grains_says_that_it_has_no_classes(tmp_path, classes):
     """Classes of grains that come later would need their sizes: a warning, and none once a run begins with grains."""
     text = f"""plugin load stokesdynplugin.so
