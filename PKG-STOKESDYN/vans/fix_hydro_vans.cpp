@@ -43,6 +43,7 @@ FixHydroVans::FixHydroVans(LAMMPS *lmp, int narg, char **arg) :
   stream.fluid.longest_life = units == "micro" ? 1e7 : units == "nano" ? 1e10 : 10.0;
 
   if (set.upflow) set.law.upward = stream.upward.data();
+  if (set.law.added_mass > 0.0) set.law.rate = stream.rate.data();
   vector_flag = 1;
   size_vector = VECTOR_SIZE;
   array_flag = 1;

@@ -2,6 +2,7 @@
 
 #include "vans_files.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -138,6 +139,7 @@ int FixHydroVans::modify_param(int narg, char **arg)
   in.positional(key);
   if (key == "profile") {
     modify_profile(in, what);
+    std::fill(stream.rate.begin(), stream.rate.end(), 0.0);
     stream.profile_changed();
     last_step = -1;
   } else if (key == "given") {

@@ -13,6 +13,7 @@ VansStream::VansStream(const VansSettings &settings) :
   const int N = ncell();
   if (!solver) set.voice.fail_one("out of memory for " + std::to_string(N) + " slices");
   U.resize(N + 1, 0.0);
+  rate.assign(N + 1, 0.0);
   wet.edge = wet_edge.data();
   if (set.follows()) {
     wet.dz = 0.0;
@@ -299,6 +300,7 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
                                 source.empty() ? nullptr : source.data()};
   const sd_vans_flow flow = {U.data(), nut.data(), stress.data()};
   sd_vans_books books = {moved.data(), shear.data(), 0, 0, 0, 0, 0};
+  std::copy(U.begin(), U.end(), rate.begin());
   const sd_status status = sd_vans_solve(solver.get(), &fluid, &water, steps, dt, &flow, &books);
   if (status != SD_OK)
     set.voice.fail("the solve of the stream over " + text(T) + " in " + std::to_string(steps) +
@@ -306,6 +308,7 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
                    ". Take a shorter time between couplings");
 
   fill_above();
+  for (size_t n = 0; n < U.size(); n++) rate[n] = (U[n] - rate[n]) / T;
   take_inflow(T);
   drive = books.drive;
   mean_drive = books.driving / (fluid.rho * T * sd_vans_volume(&wet, phi()));

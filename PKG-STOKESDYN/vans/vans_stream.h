@@ -26,8 +26,8 @@ class VansStream {
   sd_vans_mesh wet;
   /* as the settings have it, and what changes in a run */
   sd_vans_fluid fluid;
-  /* [N+1] */
-  std::vector<double> U;
+  /* [N+1]; rate: dU/dt, mean of the last solve */
+  std::vector<double> U, rate;
   /* profile of all grains, and one after the other those of the classes */
   std::vector<double> grain, class_grain;
   std::vector<double> class_radii;

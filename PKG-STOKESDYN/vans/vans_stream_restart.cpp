@@ -16,6 +16,7 @@ std::vector<SavedNumbers> VansStream::saved()
     const char *name;
     std::vector<double> &values;
   } arrays[] = {{"U", U},
+                {"rate", rate},
                 {"grain", grain},
                 {"class_grain", class_grain},
                 {"b", b},

@@ -79,6 +79,8 @@ int sd_vans_forces(const sd_vans_ambient *stream, const sd_vans_grains *grains, 
     if (grains->acceleration)
       for (int d = 0; d < 3; d++)
         Fi[d] -= law->added_mass * displaced * grains->acceleration[3 * (long) i + d];
+    if (law->rate)
+      Fi[0] += law->added_mass * displaced * law->rate[p < 0 ? 0 : (inside ? p : mesh->ncell - 1) + 1];
     if (drag_x) drag_x[i] = share * Fi[0];
     for (int d = 0; d < 3; d++) Fi[d] -= displaced * g[d];
     Fi[0] -= displaced / law->rho * law->dpdx;

@@ -92,8 +92,9 @@ typedef struct {
   double dpdx;
   /* which drag; zeros: Yade's */
   sd_drag_law drag;
-  /* C: -C rho V dv/dt on an accelerated grain */
+  /* C: C rho V (dU/dt - dv/dt) with dU/dt [N+1] along x, at the centre of a grain; NULL: none */
   double added_mass;
+  const double *rate;
   /* velocity of the water along z: [N] of the slices, and outside the mesh; NULL: none */
   const double *upward;
   double flux;

@@ -246,6 +246,29 @@ static void fall_speed_balances_weight_and_drag(void **state)
       }
 }
 
+/* Added mass is that of the acceleration past the water: of a grain at rest C rho V dU/dt, in its slice, on the surface
+ * above the mesh and at rest below it. */
+static void water_that_accelerates_pushes_by_the_added_mass(void **state)
+{
+  (void) state;
+  const double U[4] = {0, 0.1, 0.2, 0.3}, rate[4] = {0, 5, -7, 11}, hindrance[3] = {1, 1, 1}, edge[4] = {0, 1, 2, 3},
+               x[15] = {0, 0, -0.5, 0, 0, 0.5, 0, 0, 1.5, 0, 0, 2.5, 0, 0, 9}, v[15] = {0}, a[5] = {1, 1, 1, 1, 1},
+               felt[5] = {0, 5, -7, 11, 11};
+  const sd_vans_mesh mesh = {3, 0, 1, edge};
+  sd_vans_force_law law = {.rho = RHO, .eta = ETA, .added_mass = 0.4};
+  const sd_vans_ambient stream = {&mesh, &law, U, hindrance};
+  const sd_vans_grains grains = {.n = 5, .x = x, .v = v, .a = a};
+  double steady[15], F[15], drag[5];
+  sd_vans_forces(&stream, &grains, steady, NULL);
+  law.rate = rate;
+  sd_vans_forces(&stream, &grains, F, drag);
+  for (int i = 0; i < 5; i++) {
+    const double more = 0.4 * RHO * 4.0 / 3.0 * SD_PI * felt[i];
+    assert_true(fabs(F[3 * i] - steady[3 * i] - more) < 1e-9 * RHO && F[3 * i + 2] == steady[3 * i + 2]);
+    assert_true(drag[i] == F[3 * i]);
+  }
+}
+
 /* Steps of velocity Verlet in oil: the speed of a grain of this density after 1500 steps of dt, over that before. */
 static double speed_left(double density, double C, double dt)
 {
@@ -321,6 +344,7 @@ int main(void)
       cmocka_unit_test(a_core_may_have_any_number_of_neighbours),
       cmocka_unit_test(rising_water_lifts_a_grain),
       cmocka_unit_test(fall_speed_balances_weight_and_drag),
+      cmocka_unit_test(water_that_accelerates_pushes_by_the_added_mass),
       cmocka_unit_test(added_mass_shortens_the_longest_step),
       cmocka_unit_test(a_sphere_falls_in_oil_as_measured),
   };

@@ -143,6 +143,26 @@ def test_added_mass_is_carried_along():
     s.close()
 
 
+@pytest.mark.parametrize("density", [1000, 2650])
+def test_water_that_swings_takes_grains_along_by_their_added_mass(density):
+    """Without friction (rho_s + C rho) dv/dt = (1 + C) rho dU/dt: a grain of the water's density goes as the water, one
+    of quartz 0.476 times as far. 0.01: the drag of 1e-9 Pa s, and the delay of a coupling."""
+    s = Scene()
+    s.spheres([[0.01, 0.01, 0.05]], np.zeros((1, 3)), 0.005, density)
+    s.do("variable w equal 2*PI/0.1", "variable t equal (step-25)*dt",
+         "variable swing equal -1000*1e-3*v_w*cos(v_w*v_t)",
+         "fix h all hydro/vans 50 mesh 101 0.001 0 fluid 1000 1e-9 gravity 0 0 -9.8 turbulence none area 1 drag "
+         "brown_lawler added_mass 0.5 pressure_gradient v_swing", "fix g all gravity 9.8 vector 0 0 -1",
+         "fix z all setforce NULL NULL 0", "fix m all nve/sphere", "run 0")
+    speeds = []
+    for _ in range(200):
+        s.do("run 50 pre no post no")
+        speeds.append((s.atoms("v")[0, 0], s.column("u", 101)[50]))
+    s.close()
+    grain, water = np.ptp(np.array(speeds), axis=0)
+    assert water > 1.9e-3 and abs(grain / water / (1500 / (density + 500)) - 1) < 0.01
+
+
 @pytest.mark.parametrize("keywords", ["gravity 0 0 -9.81 pressure_gradient -200",
                                       "gravity 0 0 -9.81 pressure_gradient v_p", "gravity 0 0 -9.81 discharge v_q",
                                       "gravity 0.05 0 -9.81 discharge v_q"])
