@@ -13,7 +13,8 @@ OPTIONS = {
     "drive": ["slope", "pressure", "time", "discharge", "depth"], "added_mass": ["off", "off", "0.4"],
     "felt": ["centre", "volume"], "viscosity": ["constant", "einstein", "power"],
     "upflow": ["off", "off", "off", "0.002"], "bed_mixing": ["off", "0.5"], "stream": ["steady", "rest"],
-    "overlap": ["twice", "twice", "once"], "average": ["all", "mobile"],
+    "overlap": ["twice", "twice", "once"], "average": ["all", "mobile"], "leave": ["no", "no", "yes"],
+    "box": ["still", "still", "wider"],
     "period": [1, 2, 3], "skin": [0.0012, 0.0003], "steps": [4, 8, 15],
 }
 
@@ -77,9 +78,12 @@ def build(options, seed):
     s.define = [f"neighbor <L {o['skin']}> bin", "variable push equal <one slope -200-2e6*TIME>"]
     s.pair = [("gran/hooke/history", "<k 20000> NULL 0 NULL 0.4 0", "")]
     speeds = " ".join(f"<V {0.6 * k / 24!r}>" for k in range(25))
-    s.fixes = ["fix gravity all gravity <A 9.81> vector <1 0.05 0 -0.99875>",
-               f"fix vans mobile hydro/vans {words_of(o)}",
-               "fix move mobile nve/sphere"]
+    s.fixes = ["fix gravity all gravity <A 9.81> vector <1 0.05 0 -0.99875>"]
+    s.fixes += ["region up block <block INF INF INF INF 0.015 INF>",
+                "fix away mobile evaporate 3 1000 up 4711"] * (o["leave"] == "yes")
+    s.fixes += ["fix wider all deform 1 x vel <V 2.0> remap x"] * (o["box"] == "wider")
+    s.fixes += [f"fix vans mobile hydro/vans {words_of(o)}",
+                "fix move mobile nve/sphere"]
     s.late = [f"fix_modify vans profile values {speeds}"]
     s.columns = [("p", "xu yu zu"), ("V", "vx vy vz"), ("W", "omegax omegay omegaz"),
                  ("F", "f_vans[1] f_vans[2] f_vans[3]"), ("V", "f_vans[4] f_vans[5] f_vans[6]")]
