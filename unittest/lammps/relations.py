@@ -38,8 +38,8 @@ def most_ranks():
 
 # --- an input ---------------------------------------------------------------------------------------------------------
 
-def commands(scene, frame, ranks=1, newton="on", grid="", tiled=False, skin=0.0, sort="", pieces="", again=0, hybrid="",
-             twice=""):
+def commands(scene, frame, ranks=1, newton="on", grid="", tiled=False, skin=0.0, sort="", far=0.0, search="",
+             balance="", told=False, doubled=False, pieces="", again=0, hybrid="", twice=""):
     """[(ranks, lines)]: one input, or two where the second reads the restart file of the first."""
     def write(lines):
         return [word for line in lines for word in frame.write(line).split("\n")]
@@ -47,17 +47,24 @@ def commands(scene, frame, ranks=1, newton="on", grid="", tiled=False, skin=0.0,
     head = scene.head + [f"newton {newton}", "atom_modify map array" + f" sort {sort}" * bool(sort),
                          "plugin load stokesdynplugin.so"]
     head += [f"processors <each {grid}>"] * bool(grid) + ["comm_style tiled"] * tiled
-    begin = write(head + scene.make) + scene.create(frame) + write(scene.after + scene.groups)
+    strangers = scene.strangers() if hybrid == "strangers" else []
+    after = strangers + [f"replicate <each {scene.repeats}>"] * doubled + scene.after
+    begin = write(head + scene.make) + scene.create(frame) + write(after + scene.groups)
     define = [re.sub("^neighbor <L .*?>", f"neighbor <L {skin}>", line) if skin else line for line in scene.define]
+    define = [re.sub("^(neighbor .*) bin$", rf"\1 {search}", line) if search else line for line in define]
+    define += [f"comm_modify cutoff <L {far * scene.spacing}>"] * bool(far)
     define += [f"timestep <t {scene.dt!r}>", "thermo_style custom step"]
-    balance, fixes, pair = ["balance 1.1 rcb"] * tiled, write(scene.fixes), scene.pair_lines(hybrid)
+    moved = {"": "", "rcb": "rcb", "shift": f"shift {'xy' if scene.model == 'sph 2-D' else 'xyz'} 10 1.01"}[balance]
+    fixes = write(scene.fixes) + [f"fix even all balance 2 1.0 {moved}"] * bool(moved)
+    fixes += write([f"fix told all dt/reset 1 NULL <t {scene.dt!r}> <L 1e6> units box"]) * told
+    balance, pair = ["balance 1.1 rcb"] * tiled, scene.pair_lines(hybrid)
     if twice:
         body = write(define + scene.pair_lines(hybrid, frame.write(scene.other) if twice == "other" else None)) + fixes
         body += (["run 0 post no"] + write(pair) + ["print \"$(%s)\"" % scene.output_between] *
                  bool(scene.output_between))
     else:
         body = write(define + pair) + fixes
-    output, n = write(scene.output()), scene.steps
+    output, n = write(scene.output(doubled)), scene.steps
     if pieces == "restart":
         resumed = (write([line for line in head if not line.startswith(("units", "atom_style"))]) +
                    ["read_restart between"])
@@ -112,8 +119,8 @@ def read(scene, frame, folder, log):
         at = 0
         for kind, words in scene.columns:
             width = len(words.split())
-            values["atoms: " + words, kind, step] = frame.back(kind, rows[:, at:at + width] if width > 1
-                                                               else rows[:, at])
+            back = frame.back(kind, rows[:, at:at + width] if width > 1 else rows[:, at])
+            values["atoms: " + words, kind, step] = scene.at_rest(kind, step, back)
             at += width
     wide = 1 + sum(len(words.split()) for _, words in scene.globals)
     for line in log.splitlines():

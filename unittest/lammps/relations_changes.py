@@ -7,6 +7,7 @@ import random
 
 import numpy as np
 
+import relations_sph
 from relations_frame import Frame, turned
 
 def change(frame=None, loose=1.0, options=None, **how):
@@ -19,6 +20,9 @@ LAYOUT = {
     "grid 1 1 2": change(ranks=2, grid="1 1 *"), "grid 3 1 1": change(ranks=3, grid="* 1 1"),
     "tiled": change(ranks=2, tiled=True),
     "skin": change(skin=0.11), "unsorted": change(sort="0 0"),
+    "far ghosts": change(far=5.5), "all with all": change(search="nsq"), "search by type": change(search="multi"),
+    "balanced on the way": change(ranks=2, balance="shift"),
+    "tiled on the way": change(ranks=3, tiled=True, balance="rcb"), "time step told again": change(told=True),
 }
 PIECES = {
     "two runs": change(pieces="two"), "runs of 1": change(pieces="ones"), "run 0 before": change(pieces="zero"),
@@ -30,6 +34,7 @@ STYLES = {
     "hybrid": change(hybrid="hybrid"), "overlay before": change(hybrid="before"),
     "overlay after": change(hybrid="after"), "pair style twice": change(twice="same"),
     "another pair style before": change(twice="other"),
+    "strangers": change(hybrid="strangers"),
 }
 FRAMES = {
     "shift": change(frame=lambda s: Frame(shift=s.spacing *
@@ -47,8 +52,10 @@ FRAMES = {
 }
 ENGINES = {"direct": change(options={"far": "direct"}, loose=10.0),
            "ewald": change(options={"far": "ewald"}, loose=10.0)}
-CHANGES = {**LAYOUT, **PIECES, **STYLES, **FRAMES, **ENGINES}
-KINDS = (LAYOUT, PIECES, STYLES, FRAMES, ENGINES)
+BOXES = {"oblique edges": change(options={"edges": "oblique"}), "twice": change(doubled=True),
+         "shrunk edges": change(options={"edges": "shrunk"}), "drift": change(options={"drift": "yes"})}
+CHANGES = {**LAYOUT, **PIECES, **STYLES, **FRAMES, **ENGINES, **BOXES}
+KINDS = (LAYOUT, PIECES, STYLES, FRAMES, ENGINES, BOXES)
 
 
 def shuffled(scene, key):
@@ -68,7 +75,7 @@ def members(scene):
 
 
 def triclinic(o):
-    return o.get("space") in ("tilt", "deform")
+    return o.get("space") in ("tilt", "deform", "oblique", "shear")
 
 
 TURNS = ("turn", "turn back", "mirror", "mirror at the wall")
@@ -93,6 +100,8 @@ EXCEPTIONS = [
      "the volume of wall particles is that of the pressure of the step before, and of the input in the first"),
     (CUTS + ("pair style twice",), lambda o: o.get("space") ==
      "body", "fix rigid ... gravity of LAMMPS begins each run with half a step without weight"),
+    (CUTS, lambda o: o.get("space") in ("shear", "stretch"), "fix deform changes the box after the force of a step, "
+     "so the first force of a run sees it one step further, and at run 0 it has no rate"),
     (CUTS, lambda o: "forces" in o.get("motion", "") and
      (o["flow"] in ("shear", "time", "box") or o["visc"] == "formula"),
      "LAMMPS's Verlet has other velocities in the first step of a run; the page asks for numbers"),
@@ -119,14 +128,27 @@ EXCEPTIONS = [
                                                   o["turbulence"] in ("pore", "rousseau", "ni_capart")),
      "the classes are those of the grains that there are when a run begins"),
     (("pair style twice",), lambda o: o["model of"] == "vans", "the stream has no pair style"),
-    (("newton off", "tiled"), lambda o: o["model of"] == "vans", "pair gran with history does not go with it"),
+    (("newton off", "tiled", "tiled on the way"), lambda o: o["model of"] == "vans",
+     "pair gran with history does not go with it"),
+    (("time step told again",), lambda o: o.get("adapt") == "yes" or o.get("noise") == "yes",
+     "the fix has steps of its own; with noise fix dt/reset is refused"),
+    (("twice",), lambda o: o["model of"] != "sph" or o["dim"] == 2 and o["space"] in ("column", "ends", "body") or
+     o["dim"] == 3 and o["space"] == "shear" or o["space"] == "stretch" or o["wall"] == "turning",
+     "not periodic along that axis, or not with the same velocities; or the middle of the box matters"),
+    (("drift",), lambda o: o["model of"] != "sph" or not relations_sph.may_drift(o), "not Galilean invariant"),
+    (("shrunk edges",), lambda o: o["model of"] != "sph" or o["space"] not in relations_sph.WALLED or
+     o["look"] == "virial", "no open edges, or open ends; a virial is per volume of the box"),
+    (("oblique edges",), lambda o: o["model of"] != "sph" or o["space"] not in relations_sph.PERIODIC[o["dim"]] or
+     o["wall"] == "turning", "a box that is periodic there, with right angles; images do not turn with a wall"),
+    (("strangers",), lambda o: o["model of"] != "sph", "of one type, or all spheres"),
     (("hybrid", "overlay before", "overlay after"), lambda o: o.get("contacts") == "yes", "a hybrid already"),
 ]
 
 
 # (changes, others, where, why): what does not go together
 CLASHES = [(RESTARTS, tuple(STYLES), lambda o: o["model of"] == "vans",
-            "LAMMPS's pair_style hybrid loses the history of contacts in a restart file")]
+            "LAMMPS's pair_style hybrid loses the history of contacts in a restart file"),
+           (("oblique edges",), TURNS, lambda o: True, "LAMMPS has triclinic boxes of one orientation only")]
 
 # (changes, where, tolerance, why): what matters, but not much
 COARSE = [
