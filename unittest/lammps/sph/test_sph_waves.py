@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from sph_water_waves import lamb, standing, tension_on_wave
+from sph_wave import C0, DX, NX, RHO0, wave
 
 
 def test_lambs_wave_has_its_limits():
@@ -30,3 +31,16 @@ def test_tension_on_a_wave_has_the_right_sum_and_works_as_below_the_surface():
         found = tension_on_wave(n)
         assert found[0] == pytest.approx(1.012, abs=0.005)
         assert found[1] == pytest.approx(work, abs=0.005)
+
+
+@pytest.mark.parametrize("friction, times", [("viscosity {mu} laplacian", 1.0), ("viscosity {mu} central", 3.0),
+                                             ("artVisc {alpha} 0 {eta}", 2.9)])
+def test_sound_dies_by_the_friction_of_its_divergence(friction, times, tmp_path):
+    """Its energy by nu k^2: by the Laplacian once, by the central form, and so by artVisc, whose nu is alpha h c/16,
+    three times, as the force is that of a stress with a bulk viscosity."""
+    h, nu, k = 2 * DX, 0.01, 2 * np.pi / (NX * DX)
+    pair = friction.format(mu=nu * RHO0, alpha=16 * nu / (h * C0), eta=0.01 * h * h)
+    t, energies, _ = wave(tmp_path / "data", "nve/sph", 0.2, 320, 1, h=h,
+                          extra=f"pair_style sph/artVisc/tensCorr wendland {h} {pair}\npair_coeff * * c {C0}")
+    seconds = t[-1] * NX * DX / C0
+    assert -np.log(energies[-1] / energies[0]) / (nu * k * k * seconds) == pytest.approx(times, rel=0.03)
