@@ -28,12 +28,20 @@ inline std::string plain_style(const std::string &style)
   return style;
 }
 
-/* The first whose style this pattern matches (utils::strmatch), nullptr: there is none */
+/* The first whose style this pattern matches (utils::strmatch), nullptr: there is none; and all of them */
 inline LAMMPS_NS::Fix *fix_like(LAMMPS_NS::LAMMPS *lmp, const std::string &pattern)
 {
   for (int i = 0; i < lmp->modify->nfix; i++)
     if (LAMMPS_NS::utils::strmatch(lmp->modify->fix[i]->style, pattern)) return lmp->modify->fix[i];
   return nullptr;
+}
+
+inline std::vector<LAMMPS_NS::Fix *> fixes_like(LAMMPS_NS::LAMMPS *lmp, const std::string &pattern)
+{
+  std::vector<LAMMPS_NS::Fix *> found;
+  for (int i = 0; i < lmp->modify->nfix; i++)
+    if (LAMMPS_NS::utils::strmatch(lmp->modify->fix[i]->style, pattern)) found.push_back(lmp->modify->fix[i]);
+  return found;
 }
 
 /* All of this plain style, in the order of the input. */
@@ -50,6 +58,29 @@ template <class Style> std::vector<Style *> fixes_of(LAMMPS_NS::LAMMPS *lmp)
   std::vector<Style *> found;
   for (auto *fix : fixes_of(lmp, Style::STYLE)) found.push_back(static_cast<Style *>(fix));
   return found;
+}
+
+/* Those that move each atom of their group by the force on it: all that integrate in time, but fix move, rigid bodies
+ * and what keeps walls at rest. */
+inline std::vector<LAMMPS_NS::Fix *> integrators_of(LAMMPS_NS::LAMMPS *lmp)
+{
+  std::vector<LAMMPS_NS::Fix *> found;
+  for (int i = 0; i < lmp->modify->nfix; i++) {
+    LAMMPS_NS::Fix *fix = lmp->modify->fix[i];
+    const std::string style = fix->style;
+    if (fix->time_integrate && style != "move" && style.find("rigid") == std::string::npos &&
+        style.find("stationary") == std::string::npos)
+      found.push_back(fix);
+  }
+  return found;
+}
+
+/* Union of their group bits */
+inline int groups_of(const std::vector<LAMMPS_NS::Fix *> &fixes)
+{
+  int bits = 0;
+  for (const auto *fix : fixes) bits |= fix->groupbit;
+  return bits;
 }
 
 }    // namespace StokesDyn

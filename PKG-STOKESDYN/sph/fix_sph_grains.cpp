@@ -118,12 +118,12 @@ void FixSphGrains::init()
  * that they are moved with: these count as held within a step. */
 void FixSphGrains::find_held()
 {
-  free_bits = Sph::groups(Sph::integrators(lmp));
+  free_bits = groups_of(integrators_of(lmp));
   held_bits = body_bits = 0;
   for (int k = 0; k < modify->nfix; k++)
     if (fits("rigid*", modify->fix[k]->style)) body_bits |= modify->fix[k]->groupbit;
   for (const char *style : {"freeze", "setforce", "move"})
-    held_bits |= Sph::groups(fixes_of(lmp, style));
+    held_bits |= groups_of(fixes_of(lmp, style));
 }
 
 bool FixSphGrains::is_too_large(double diameter) const

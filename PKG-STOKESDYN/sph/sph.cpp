@@ -44,21 +44,6 @@ namespace Sph {
     return found;
   }
 
-  std::vector<Fix *> integrators(LAMMPS *lmp)
-  {
-    std::vector<Fix *> found;
-    for (Fix *fix : movers(lmp))
-      if (strcmp(fix->style, "move") != 0 && !strstr(fix->style, "rigid")) found.push_back(fix);
-    return found;
-  }
-
-  int groups(const std::vector<Fix *> &fixes)
-  {
-    int bits = 0;
-    for (const auto *fix : fixes) bits |= fix->groupbit;
-    return bits;
-  }
-
   double mass(LAMMPS *lmp, int i)
   {
     const Atom *atom = lmp->atom;

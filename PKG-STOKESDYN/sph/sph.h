@@ -46,11 +46,6 @@ namespace Sph {
 
   /* Those that move particles: all that integrate in time, but for particles at rest */
   std::vector<LAMMPS_NS::Fix *> movers(LAMMPS_NS::LAMMPS *lmp);
-  /* Of these, those that move each by the force on it: all but fix move and rigid bodies */
-  std::vector<LAMMPS_NS::Fix *> integrators(LAMMPS_NS::LAMMPS *lmp);
-
-  /* Union of their group bits. */
-  int groups(const std::vector<LAMMPS_NS::Fix *> &fixes);
 
   double mass(LAMMPS_NS::LAMMPS *lmp, int i);
 

@@ -100,14 +100,19 @@ void SphChecks::look_at_plane()
 /* Whom no fix gives a density or a place: neither water nor a wall. */
 void SphChecks::look_at_idlers()
 {
-  const int theirs = Sph::groups(fixes_of(lmp, "sph")) | Sph::groups(fixes_of(lmp, "sph/stationary"));
+  const int theirs = groups_of(fixes_of(lmp, "sph")) | groups_of(fixes_of(lmp, "sph/stationary"));
   if (!roles.continuity || update->nsteps == 0) return;
+  const auto idles = [&](int i) {
+    return settings.used(atom->type[i]) && !roles.is_wall(i) && !roles.advances_density(i) && !(atom->mask[i] & theirs);
+  };
+  for (const auto *fix : integrators_of(lmp))
+    if (const tagint moved = first_atom(lmp, [&](int i) { return idles(i) && (atom->mask[i] & fix->groupbit); }))
+      voice.fail("atom " + std::to_string(moved) + " is moved by " + name_of(fix) +
+                 ", which does not advance its density: water is moved by fix nve/sph, and a wall by fix wall/adami/sph");
   double idle = 0.0;
   tagint first = MAXTAGINT;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!settings.used(atom->type[i]) || roles.is_wall(i) || roles.advances_density(i) ||
-        (atom->mask[i] & theirs))
-      continue;
+    if (!idles(i)) continue;
     idle++;
     first = std::min(first, atom->tag[i]);
   }

@@ -96,10 +96,10 @@ void SphRoles::find_integrators()
   leapfrog = continuity && ours;
   if (continuity && others && continuity->delta > 0.0)
     voice.warn("delta of fix sph/density/continuity has no effect with fix sph; use fix nve/sph");
-  leapfrog_bits = Sph::groups(moving) | Sph::groups(stationary);
-  own_vest_bits = Sph::groups(moving) | Sph::groups(theirs);
-  rest_bits = Sph::groups(stationary) | Sph::groups(their_stationary);
-  displaced_bits = Sph::groups(Sph::movers(lmp));
+  leapfrog_bits = groups_of(moving) | groups_of(stationary);
+  own_vest_bits = groups_of(moving) | groups_of(theirs);
+  rest_bits = groups_of(stationary) | groups_of(their_stationary);
+  displaced_bits = groups_of(Sph::movers(lmp));
 }
 
 bool SphRoles::rests_alone(int i) const
@@ -153,7 +153,7 @@ void SphRoles::check_groups()
     moved |= fix->groupbit;
   }
   if (!wall) return;
-  for (const auto *fix : Sph::integrators(lmp))
+  for (const auto *fix : integrators_of(lmp))
     if (const tagint both = in_both(wall->groupbit, fix->groupbit))
       wall->voice.fail("atom " + std::to_string(both) + " of its group is also integrated by fix " +
                        fix->id + ", so the wall would flow: let that fix move the fluid alone; a body "

@@ -44,7 +44,7 @@ Hydrodynamics &ComputeStokesDynamicsStress::hydrodynamics() const
 {
   Hydrodynamics *hydro = Hydrodynamics::of(lmp);
   if (!hydro || !hydro->settings.shells.on())
-    voice.fail("it requires pair_style stokes_dynamics with multiblob 12 or 42");
+    voice.fail("it requires pair_style stokes_dynamics with multiblob");
   return *hydro;
 }
 

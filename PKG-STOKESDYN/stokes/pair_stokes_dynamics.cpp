@@ -275,13 +275,23 @@ void PairStokesDynamics::require_atoms()
   if (settings.scene.rotation && (!atom->omega_flag || !atom->torque_flag))
     voice.fail("keyword rotation: yes requires an atom style with angular velocity and torque, "
                "such as sphere");
-  if (atom->molecule_flag) return;
+  if (atom->molecule_flag) return warn_of_no_clump();
   const std::string ways = " (atom_style hybrid sphere bond, or fix property/atom mol)";
   if (settings.precondition == StokesSettings::CLUMP)
     voice.fail("keyword precondition: 'clump' requires molecule IDs");
   if (settings.scene.clumps_only)
     voice.fail("keyword clumps_only: yes requires molecule IDs" + ways);
   if (settings.rigid.on) voice.fail("keyword rigid_clumps requires molecule IDs" + ways);
+}
+
+/* A forgotten molecule ID makes a clump into free spheres, without a word. */
+void PairStokesDynamics::warn_of_no_clump()
+{
+  const auto in_clump = [this](int i) { return atom->molecule[i] != 0; };
+  if (warned_no_clump || !hydro.settings.rigid.on || atom->natoms == 0 || first_atom(lmp, in_clump)) return;
+  warned_no_clump = true;
+  voice.warn("keyword rigid_clumps: all atoms have the molecule ID 0, so that each sphere is free and there is no "
+             "clump: give the spheres of a clump an ID of their own");
 }
 
 void PairStokesDynamics::look_for_fixes()

@@ -42,7 +42,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   double largest_diameter = 0.0;
   /* for compute pair: iterations, residual, unconverged solves, dissipation */
   double reported[4] = {0.0};
-  bool warned_nobody_applies = false, warned_undragged = false;
+  bool warned_nobody_applies = false, warned_undragged = false, warned_no_clump = false;
   /* by whom forces were last found: the step, the lists that LAMMPS had made in this run, the run */
   struct {
     LAMMPS_NS::bigint step, builds;
@@ -66,6 +66,7 @@ class PairStokesDynamics : public LAMMPS_NS::Pair {
   void accept_all_types();
   std::vector<std::string> words_of_now() const;
   void require_atoms();
+  void warn_of_no_clump();
   void look_for_fixes();
   double range() const;    // what LAMMPS is told
 };

@@ -29,7 +29,7 @@ void Squirmers::init(const Hydrodynamics &hydro, int groupbit)
   whom.find(voice);
   for (Field *amplitude : {&B1, &B2, &beta}) amplitude->init(lmp);
   if (!hydro.settings.shells.on())
-    voice.fail("single points have no surface that slips: use multiblob 12 or 42 of " + style +
+    voice.fail("single points have no surface that slips: use multiblob of " + style +
                ", or push spheres without a flow of their own by fix propel/self");
   if (hydro.settings.rigid.each_alone())
     voice.fail("it is for spheres that feel each other: use clumps_only no of " + style);

@@ -195,7 +195,7 @@ void StokesSettings::check_close_spheres(const Keywords &in, bool all_pairs) con
   in.require(!in.given("multiblob_most") || shells.most >= shells.points,
              "keyword multiblob_most: '" + std::to_string(shells.most) +
                  "' must not be less than multiblob, " + std::to_string(shells.points));
-  in.require(!in.given("one_body") || shells.on(), "keyword one_body requires multiblob 12 or 42");
+  in.require(!in.given("one_body") || shells.on(), "keyword one_body requires multiblob");
   in.require(!in.given("lubrication_gap") || lubrication.on,
              "keyword lubrication_gap requires lubrication yes");
   in.require(!in.given("lubrication_range") || lubrication.on,

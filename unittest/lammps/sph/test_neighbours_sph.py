@@ -213,6 +213,13 @@ def test_a_floor_that_no_fix_makes_a_wall_is_warned_of(tmp_path, change, steps, 
     assert error == "" and (IDLE in warnings) == says
 
 
+def test_water_must_not_be_moved_by_a_fix_that_does_not_advance_its_density(tmp_path):
+    """Beside fix nve/sph/stationary of a floor, fix nve let it flow with the densities of the beginning."""
+    lines = [line.replace("nve/sph", "nve") if line.startswith("fix move") else line for line in scene()]
+    error, _ = said(tmp_path, lines + ["fix rest walls nve/sph/stationary"], 1)
+    assert "fix move of style nve, which does not advance its density: water is moved by fix nve/sph" in error
+
+
 TWICE, THIN = "create_atoms 1 region again", "region floor block 0 0.8 -0.1 0 INF INF units box"
 
 

@@ -99,7 +99,7 @@ AT_THE_COMMAND += [(f"{cut} visc 1.3 {words}", [expected]) for cut, words, expec
      "keyword multiblob has its own preconditioner"),
     ("cut_off_distance inf", "multiblob 12 lubrication yes lubrication_range 3",
      "keyword lubrication_range: '3' must be <= 2 with multiblob"),
-    ("cut_off_distance inf", "one_body no", "keyword one_body requires multiblob 12 or 42"),
+    ("cut_off_distance inf", "one_body no", "keyword one_body requires multiblob"),
     ("cut_off_distance inf", "lubrication on", "keyword lubrication: 'on' is none of: no, yes"),
     ("cut_off_distance inf", "rotation yes lubrication_gap 1e-3", "keyword lubrication_gap requires lubrication yes"),
     ("cut_off_distance inf", "rotation yes lubrication no lubrication_range 1",
@@ -233,6 +233,17 @@ def test_clumps_without_molecule_ids(simulation, words, keyword):
                                  f"pair_style stokes_dynamics {words} visc 1.3", "pair_coeff * *"])
     with pytest.raises(LammpsError, match=f"{PAIR}: keyword {keyword} requires molecule IDs"):
         sim.run()
+
+
+@pytest.mark.parametrize("molecule, words, warned", [
+    ((0, 0), "rigid_clumps yes", True), ((0, -2), "rigid_clumps yes", False), ((0, 0), "", False)])
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_rigid_clumps_where_no_sphere_is_in_one_are_warned_of(tmp_path, molecule, words, warned, ranks):
+    """Data without molecule IDs ran as free spheres, without a word."""
+    lines = input_lines(Spheres([(0, 0, 0), (1.4, 0, 0)], A, molecule=molecule),
+                        f"clumps_only yes visc {ETA} {words}", tmp_path / "data")
+    log = " ".join(lmp(tmp_path, lines + ["run 0"], ranks=ranks).log.split())
+    assert ("all atoms have the molecule ID 0, so that each sphere is free" in log) == warned
 
 
 def test_spheres_without_ids(simulation):

@@ -162,7 +162,7 @@ def test_a_swimmer_diffuses_as_others_do_and_its_step_is_its_stroke(simulation, 
 
 @pytest.mark.parametrize("words, lines, message", [
     (POINTS, f"{MOVE} squirm all 1 0",
-     "keyword squirm: single points have no surface that slips: use multiblob 12 or 42"),
+     "keyword squirm: single points have no surface that slips: use multiblob of"),
     (shells(12), f"{MOVE} squirm nobody 1 0", "keyword squirm: group 'nobody' does not exist"),
     (shells(12), f"{MOVE} squirm all 1", "keyword squirm"),
     (shells(12), f"{MOVE} squirm all 1 x", "keyword squirm: 'x'"),
