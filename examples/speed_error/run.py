@@ -99,8 +99,9 @@ def scenes(quick):
         yield "cloud of 10 000", dilute(10000, 0.05), False, "cut_off_distance inf", 5
 
 
-def settings(exact, has_clumps, rigid, n, quick):
-    """(family, words, is it a finer model, which no error of this one judges?) of a scene"""
+def settings(exact, has_clumps, rigid, n, quick, radius=1.0):
+    """(family, words, is it a finer model, which no error of this one judges?) of a scene; radius: of its spheres, the
+    unit of cut-offs"""
     two = f"{exact} algorithm 2 relative_tolerance"
     for tolerance in ("1e-1", "1e-2", "1e-3") + (() if quick else ("1e-4",)) + ("1e-6",):
         yield "tolerance", f"{two} {tolerance}", False
@@ -116,11 +117,12 @@ def settings(exact, has_clumps, rigid, n, quick):
         yield "rigid_clumps", "clumps_only yes rigid_clumps yes", False
         yield "shell", "clumps_only yes rigid_clumps yes shell 12", True
     else:
-        yield "cut-off", "cut_off_distance 1e-6", False
-        yield "cut-off", "cut_off_distance 8 algorithm 2 relative_tolerance 1e-3", False
+        yield "cut-off", f"cut_off_distance {1e-6 * radius:g}", False
+        yield "cut-off", f"cut_off_distance {8 * radius:g} algorithm 2 relative_tolerance 1e-3", False
         for taper in ("wendland", "spherical"):
             for R in (10, 40) if quick else (10, 20, 40):
-                yield "taper", f"cut_off_distance {R} taper {taper} algorithm 2 relative_tolerance 1e-3", False
+                words = f"cut_off_distance {R * radius:g} taper {taper} algorithm 2 relative_tolerance 1e-3"
+                yield "taper", words, False
         if has_clumps:
             yield "clumps_only", "clumps_only yes algorithm 2 relative_tolerance 1e-3", False
     yield "tensor oseen", f"{two} 1e-3 tensor oseen", False
@@ -161,8 +163,8 @@ class Scene:
             sys.exit(f"run.py: no atoms in {self.data}")
         a, v, x = (lmp.numpy.extract_atom(name)[:n] for name in ("radius", "v", "x"))
         clump = lmp.numpy.extract_atom("molecule")[:n].ravel()
-        self.rest = not np.abs(v).any()
-        self.dt = float(MOVE * a.mean() / (1.0 if self.rest else np.linalg.norm(v, axis=1).mean()))
+        self.rest, self.radius = not np.abs(v).any(), float(a.mean())
+        self.dt = float(MOVE * self.radius / (1.0 if self.rest else np.linalg.norm(v, axis=1).mean()))
         self.ghosts = float(max(np.linalg.norm(np.ptp(x[clump == k], axis=0)) for k in np.unique(clump)) + 4 * a.max())
         lmp.close()
         return self
@@ -415,7 +417,7 @@ def check_scene(c, name, points, refused, wanted):
 
 def read_arguments():
     options = argparse.ArgumentParser(description="Time per step against error, for many settings of stokes_dynamics.")
-    options.add_argument("--data", help="data file of atom_style hybrid sphere bond, units lj; all at rest: they fall")
+    options.add_argument("--data", help="data file of atom_style hybrid sphere bond, any units; all at rest: they fall")
     options.add_argument("--clumps", action="store_true",
                          help="with --data: the clumps are rigid and do not see each other")
     options.add_argument("--quick", action="store_true")
@@ -438,7 +440,7 @@ def measure_data(say, given):
     if not data.is_file():
         sys.exit(f"run.py: --data {given.data}: there is no such file")
     exact = "clumps_only yes" if given.clumps else "cut_off_distance inf"
-    kinds = settings(exact, given.clumps, given.clumps, 1000, given.quick)
+    kinds = settings(exact, given.clumps, given.clumps, 1000, given.quick, Scene(data).look().radius)
     return [(data.name, *measure(say, data.name, data, exact, STEPS, kinds, given.error, given.ranks))]
 
 

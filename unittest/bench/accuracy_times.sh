@@ -12,7 +12,7 @@ peers=${XDG_CACHE_HOME:-$HOME/.cache}/stokesdyn/peers
 export OPENBLAS_NUM_THREADS=1
 if [ ! -e "$peers/complete" ]; then
   python3 -m venv "$peers"
-  "$peers/bin/pip" install numpy scipy cython setuptools pytest matplotlib fmm3dpy
+  "$peers/bin/pip" install numpy scipy cython setuptools wheel pytest matplotlib fmm3dpy
   "$peers/bin/pip" install --no-build-isolation pystokes
   "$peers/bin/pip" install jfsd
   "$peers/bin/pip" install "jax==0.4.38" "jaxlib==0.4.38"    # jfsd's own jax is gone

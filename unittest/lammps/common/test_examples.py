@@ -48,6 +48,24 @@ def test_every_figure_of_an_example_holds(name, tmp_path):
                                       "log" in path.name))
 
 
+def test_settings_for_spheres_of_ones_own_do_not_depend_on_their_unit_of_length(tmp_path):
+    """Cut-offs were 8 and more in the units of the file: with radii of half a millimetre they reached everybody."""
+    errors = []
+    for radius in 1.0, 5e-4:
+        data = tmp_path / f"{radius}.data"
+        rows = [f"{k + 1} 1 {3.9 * radius * k} 0 0 {2 * radius} 1.0 0" for k in range(7)]
+        box = [f"{-40 * radius} {40 * radius} {axis}lo {axis}hi" for axis in "xyz"]
+        data.write_text("\n".join(["spheres", "", "7 atoms", "1 atom types", *box, "", "Atoms", "", *rows, ""]))
+        command = [sys.executable, str(EXAMPLES / "speed_error" / "run.py"), "--data", str(data), "--quick",
+                   "--ranks", "1", "--out", str(tmp_path)]
+        run = subprocess.run(command, env=dict(environment(), PYTHONDONTWRITEBYTECODE="1"), stdin=subprocess.DEVNULL,
+                             capture_output=True, text=True, timeout=PATIENCE)
+        assert run.returncode == 0, run.stdout[-3000:] + run.stderr[-3000:]
+        with_cut_off = re.findall(r"^ +[\d.]+ +(\S+e\S+) .*cut_off_distance \d", run.stdout, re.M)
+        errors.append([float(error) for error in with_cut_off])
+    assert len(errors[0]) >= 5 and errors[1] == pytest.approx(errors[0], rel=0.1)
+
+
 # --- the logs that are kept beside the examples -----------------------------------------------------------------------
 
 def commands(script):
