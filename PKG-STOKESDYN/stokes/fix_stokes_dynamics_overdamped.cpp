@@ -319,6 +319,7 @@ void FixStokesDynamicsOverdamped::advance()
   if (noise.on()) noise.warn_of_repeats();
   if (scheme != MIDPOINT && !warned_growth) watch();
   if (scheme == MIDPOINT) {
+    steps.begin_where_put();
     if (noise.on())
       make_step(hydro, found(hydro));
     else

@@ -134,6 +134,20 @@ void BodySteps::begin(const Hydrodynamics &hydro)
   mu = directions.all();
 }
 
+void BodySteps::begin_where_put()
+{
+  found_at.atoms.resize(began.x.atoms.size());
+  for (int i : began.who) {
+    if (drives.is_moved(i)) continue;
+    for (size_t d = 0; d < 3; d++) {
+      double &from = began.x.atoms[3 * (size_t) i + d];
+      found_at.atoms[3 * (size_t) i + d] += atom->x[i][d] - from;
+      from = atom->x[i][d];
+    }
+  }
+  mu = directions.all();
+}
+
 void BodySteps::return_to_start()
 {
   for (int i : began.who) std::copy_n(&began.x.atoms[3 * (size_t) i], 3, atom->x[i]);

@@ -69,6 +69,9 @@ class BodySteps : protected LAMMPS_NS::Pointers {
     bool carried;
   };
   void begin(const Hydrodynamics &);
+  /* Others have moved or turned those who take part since: a barostat, fix recenter, fix set. The step begins
+   * where they stand now. */
+  void begin_where_put();
   const Start &start() const { return began; }
   /* All but those of fix move stand there again. */
   void return_to_start();

@@ -326,9 +326,6 @@ const std::vector<Neighbour> stokes_neighbours = {
     {N::FIX, "wall/reflect* wall/piston", OVERDAMPED | MIDWAY, N::ERROR,
      "stands before fix stokes_dynamics/overdamped in the input, whose step it then does not see, so that "
      "spheres stay behind its wall until the next one: define it behind", stands_before_motion},
-    {N::FIX, "recenter", OVERDAMPED | MIDWAY, N::WARNING,
-     "does nothing: scheme midpoint makes its step from where spheres were before it: take it out and centre what "
-     "has been written, or use scheme ab2", nullptr, FREE},
     {N::FIX, "addtorque", TURNING, N::WARNING,
      "pushes the atoms of its group, which turns the group and not the spheres, and does nothing "
      "to a single sphere: a torque on spheres is the keyword torque of fix "

@@ -80,6 +80,13 @@ def test_a_shear_turns_by_half_its_rate_and_keeps_the_length(simulation, tmp_pat
     assert not directions(sim)[1].any()
 
 
+@pytest.mark.parametrize("scheme", ["ab2", "midpoint"])
+def test_a_direction_that_is_set_between_runs_is_gone_on_from(simulation, tmp_path, scheme):
+    sim = dipoles(simulation, tmp_path, CENTRE, (1, 0, 0), POINTS, 0.1).commands([f"{MOVE} scheme {scheme}"]).run(1)
+    sim.commands(["set group all dipole 0 0 1", "run 1 pre no"])
+    assert np.array_equal(directions(sim), [(0, 0, 1)])
+
+
 @functools.lru_cache(maxsize=None)
 def in_field_and_shear(t):
     """e(t) of a dipole (1, 0, 0) in a field along y and a flow that turns by 0.3 about x, by Runge and Kutta's

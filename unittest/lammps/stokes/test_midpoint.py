@@ -44,3 +44,31 @@ def test_a_sphere_that_is_outside_of_the_region_only_in_the_middle_of_a_step(sim
         ends.append(sim.commands(MOVE).run(1).x)
     assert ends[0][0, 0] == pytest.approx(1.25, rel=1e-3)
     assert np.array_equal(*ends)
+
+
+PLACES = np.array([(-4.0, 1, 2), (3, -2, 1)])
+
+
+def at_places(simulation, commands, dt, molecule=0):
+    words = "cut_off_distance inf visc 1 relative_tolerance 1e-10" + " rigid_clumps yes rotation yes" * molecule
+    return simulation(Spheres(PLACES, molecule=molecule), words, box=[(-10, 10)] * 3, boundary="p p p", dt=dt,
+                      fix=False).commands(commands).run(10)
+
+
+@pytest.mark.parametrize("noise, error", [("", 1e-12), (" temperature 1e-4 4711", 2e-3)])
+def test_a_step_begins_where_a_barostat_has_put_the_spheres(simulation, noise, error):
+    """Without forces they keep their places in the box, which shrinks; noise moves them by some 3e-4."""
+    sim = at_places(simulation, [MOVE + noise, "fix press all press/berendsen iso 2 2 0.1 modulus 10"], 1e-3)
+    edge = sim.lmp.extract_box()[1][0]
+    assert 9.9 < edge < 9.95
+    assert np.abs(sim.x * 10 / edge - PLACES).max() < error
+
+
+@pytest.mark.parametrize("noise, molecule", [("", 0), ("", 1), (" temperature 0.01 4711", 0)])
+def test_a_step_begins_where_spheres_are_centred(simulation, noise, molecule):
+    """fix recenter does so before the step, so that their centre is off by this one at its end. Noise is tied to the
+    grid of the box, and so another one."""
+    free, centred = (at_places(simulation, [centre, "fix w all addforce 1 0 0", MOVE + noise], 1e-2, molecule).x
+                     for centre in ("", "fix centre all recenter 1 2 3"))
+    assert noise or np.abs(np.diff(free, axis=0) - np.diff(centred, axis=0)).max() < 1e-8
+    assert np.abs(centred.mean(axis=0) - (1, 2, 3)).max() < 0.03

@@ -142,8 +142,6 @@ CASES = [
      "fix b of style planeforce takes away forces"),
     ("FIX wall/reflect* wall/piston", "OVERDAMPED | MIDWAY", fixed("fix b GROUP wall/reflect zlo -8", HALFWAY),
      "fix b of style wall/reflect stands before fix stokes_dynamics/overdamped"),
-    ("FIX recenter", "OVERDAMPED | MIDWAY", fixed("fix b GROUP recenter INIT INIT INIT", HALFWAY),
-     "fix b of style recenter does nothing: scheme midpoint makes its step from where"),
     ("COMMAND neigh_modify", "0", listed(OVERDAMPED),
      "neigh_modify has include others, which leaves out atom 1: its forces of all steps add up"),
     ("COMMAND neigh_modify", "0", listed(INERTIA), "neigh_modify has include others, which leaves out atom 1"),
@@ -311,6 +309,7 @@ FINE = {
     "forces set where the pair style adds the drag": scene(f"{WORDS} add_force yes")
     + ["fix b ours setforce 0 0 0", "fix move ours nve/sphere"],
     "spheres that are centred by the step of ab2": scene() + ["fix b ours recenter INIT INIT INIT", OVERDAMPED],
+    "spheres that are centred beside midpoint": scene() + ["fix b ours recenter INIT INIT INIT", HALFWAY],
     "a wall that sees the step of midpoint": scene() + [HALFWAY, "fix b ours wall/reflect zlo -8"],
     "a wall before a step that it sees": scene() + ["fix b ours wall/reflect zlo -8", OVERDAMPED],
     "contacts damped before the fluid drags": scene(before=TODAY) + ["fix b ours damping/cundall 0.1 0.1"]
