@@ -29,6 +29,9 @@ class FixSphDensityContinuity : public SphOutputFix {
  public:
   static constexpr const char *STYLE = "sph/density/continuity";
   FixSphDensityContinuity(LAMMPS_NS::LAMMPS *, int, char **);
+  void post_run() override { computed = -1; }
+  // the latest step of this run whose forces the pair style has computed; -1: none
+  LAMMPS_NS::bigint computed = -1;
   // density diffusion
   double delta = 0.0;
   // fluids of different density

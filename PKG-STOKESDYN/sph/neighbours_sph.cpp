@@ -60,9 +60,8 @@ const std::vector<Neighbour> &sph_neighbours()
       {N::PAIR, "sph/rhosum sph/taitwater* sph/idealgas sph/lj rheo*", 0, N::ERROR,
        "sets the density or adds the pressure of particles for which pair_style sph/artVisc/tensCorr "
        "does that: take one of the two out, or give them other types"},
-      {N::FIX, "rheo*", 0, N::ERROR,
-       "moves particles and advances their density, which is the task of fix nve/sph here: take it "
-       "out, or use pair_style rheo"},
+      {N::FIX, "rheo*", 0, N::ERROR, "moves particles and advances their density, which is the task of fix nve/sph "
+                                     "here: take it out, or use pair_style rheo"},
       // who sees whom
       {N::COMMAND, "neigh_modify", 0, N::ERROR,
        "has {}: take it out; only particles of fix wall/adami/sph may be kept from each other", loses_by_exclude,
@@ -87,6 +86,8 @@ const std::vector<Neighbour> &sph_neighbours()
       {N::FIX, "recenter", 0, N::WARNING,
        "moves some of the particles without a velocity, so that the density knows nothing of it: name a group with "
        "all particles of water and walls, or take it out", moves_a_part},
+      {N::FIX, "temp/* langevin* heat ehex", 0, N::WARNING,
+       "changes velocities of the water, which are its flow: take it out before the run that counts", nullptr, WATER},
       {N::COMMAND, "timestep", 0, N::ERROR,
        "is {}, and friction would drive velocities apart on the way back: use a positive one", runs_back, N::ANYWHERE},
       // walls

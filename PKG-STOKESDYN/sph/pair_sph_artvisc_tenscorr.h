@@ -127,6 +127,7 @@ class PairSph : public GhostRows<LAMMPS_NS::Pair>, public SphCoefficients {
 
   void allocate();
   void choose_scheme();
+  void refuse_again();
   void check_list();
   void estimate_velocities();
   void settle_walls();

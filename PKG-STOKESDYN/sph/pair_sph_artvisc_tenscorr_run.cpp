@@ -62,6 +62,7 @@ void PairSph::init_style()
   dangerous_builds = neighbor->ndanger;
   Compat::request_half_list(neighbor, this, instance_me, !rows.shared);
   begun = false;
+  if (roles.continuity) roles.continuity->computed = -1;
 }
 
 /* What the options make of rate and force, and the fixes that this needs */
@@ -105,6 +106,7 @@ void PairSph::compute(int eflag, int vflag)
   if (roles.continuity && !begun)
     voice.fail("cannot be used with rerun: a dump file has no densities for fix sph/density/continuity; use pair_style "
                "zero for what needs no forces of the water, or restart files");
+  if (roles.continuity) refuse_again();
   ev_init(eflag, vflag);
   listed = {atom->nlocal, atom->nghost};
   check_list();
@@ -137,6 +139,16 @@ double PairSph::single(int, int, int, int, double, double, double, double &fforc
 {
   fforce = 0.0;
   return 0.0;
+}
+
+/* Each force advances the densities, or adds to their rates. */
+void PairSph::refuse_again()
+{
+  auto &computed = roles.continuity->computed;
+  if (computed == update->ntimestep && update->nsteps > 0)
+    voice.at_step().fail("another command asks for the forces of this step again, as fix numdiff, gcmc or atom/swap "
+                         "and compute born/matrix or fep do, and densities would go on twice: take it out");
+  computed = update->ntimestep;
 }
 
 /* A list that could not be rebuilt in time misses pairs. LAMMPS counts that as a dangerous build

@@ -145,6 +145,12 @@ static bool follows_velocities(const Guest &guest, std::string &)
   return !atom->mu_flag && !atom->ellipsoid_flag;
 }
 
+/* That mode leaves its virial out of the pressure, as fix_modify virial no does. */
+static bool may_follow_velocities(const Guest &guest, std::string &says)
+{
+  return !follows_velocities(guest, says) && !guest.fix->thermo_virial;
+}
+
 static bool stands_before_motion(const Guest &guest, std::string &)
 {
   return !stands_behind(guest, "stokes_dynamics/overdamped");
@@ -180,6 +186,16 @@ static bool is_no_sphere(const Guest &guest, std::string &says)
     return guest.ours(i) && shapes->array_atom[i][0] > 0.0 && off > 1e-6 * atom->radius[i];
   });
   lmp->modify->delete_compute(ID);
+  says = std::to_string(first);
+  return first != 0;
+}
+
+/* Of atom styles line, tri and body, -1: none */
+static bool has_shape(const Guest &guest, std::string &says)
+{
+  const Atom *atom = guest.lmp->atom;
+  const int *shape = guest.style == "line" ? atom->line : guest.style == "tri" ? atom->tri : atom->body;
+  const tagint first = first_atom(guest.lmp, [&](int i) { return guest.ours(i) && shape[i] >= 0; });
   says = std::to_string(first);
   return first != 0;
 }
@@ -347,6 +363,18 @@ const std::vector<Neighbour> stokes_neighbours = {
     {N::FIX, "damping/cundall", APPLIED, N::WARNING,
      "stands behind fix stokes_dynamics in the input and makes forces larger that oppose a velocity, and so also the "
      "drag of the fluid: define it before", stands_behind_drag},
+    {N::FIX, "ti/spring", ADDED, N::WARNING,
+     "scales all forces on its spheres, and so also the drag of the fluid: use add_force no, and fix stokes_dynamics "
+     "behind it in the input"},
+    {N::FIX, "ti/spring", APPLIED, N::WARNING,
+     "stands behind fix stokes_dynamics in the input and scales all forces on its spheres, and so also the drag of the "
+     "fluid: define it before", stands_behind_drag},
+    {N::FIX, "numdiff*", ADDED | TURNING, N::WARNING,
+     "computes forces once more in the same step, and LAMMPS does not take away the torques of pair styles in between, "
+     "so that spheres turn too fast: use add_force no, and fix stokes_dynamics"},
+    {N::COMPUTE, "fep* born/matrix", ADDED | TURNING, N::WARNING,
+     "computes forces once more in the same step (born/matrix with numdiff), and LAMMPS does not take away the torques of pair styles in between, "
+     "so that spheres turn too fast: use add_force no, and fix stokes_dynamics"},
     {N::COMMAND, "timestep", FORCE, N::ERROR,
      "is {}, and drag would drive velocities apart on the way back: use a positive one", runs_back, N::ANYWHERE},
 
@@ -379,6 +407,9 @@ const std::vector<Neighbour> stokes_neighbours = {
     {N::FIX, "propel/self", OVERDAMPED, N::ERROR,
      "pushes spheres along their velocities (mode velocity), which would be those of the step before: use mode "
      "dipole, with atom_style dipole and spheres that turn", follows_velocities},
+    {N::FIX, "propel/self", OVERDAMPED | TURNING, N::WARNING,
+     "pushes spheres along their velocities if its mode is velocity, which would be those of the step before: use "
+     "mode dipole", may_follow_velocities},
     {N::FIX, "damping/cundall", OVERDAMPED, N::ERROR,
      "makes forces smaller by the velocities of the step before: take it out"},
     {N::PAIR, "*dpd* bpm/spring", OVERDAMPED, N::ERROR,
@@ -405,6 +436,9 @@ const std::vector<Neighbour> stokes_neighbours = {
     {N::ATOM, "ellipsoid", 0, N::WARNING,
      "gives atom {} a shape that is not that of its sphere, and the fluid sees the sphere "
      "(diameter) only: fill an ellipsoid with the spheres of a rigid clump", is_no_sphere},
+    {N::ATOM, "line tri body", 0, N::WARNING,
+     "gives atom {} a shape of its own, and the fluid sees a sphere with its radius, which does not turn it: fill the "
+     "shape with the spheres of a rigid clump", has_shape},
 
     // who is there
     {N::COMMAND, "neigh_modify", 0, N::ERROR,

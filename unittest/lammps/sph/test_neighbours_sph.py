@@ -87,6 +87,10 @@ BESIDE = [
     ("FIX sph", "CONTINUITY", moved_by_lammps, "fix move of style sph lets sound grow at time steps above 0.00075"),
     ("FIX recenter", "0", fixed("fix b GROUP recenter INIT NULL NULL"),
      "fix b of style recenter moves some of the particles without a velocity"),
+    ("FIX temp/* langevin* heat ehex", "0", fixed("fix b GROUP temp/rescale 1 1 1 0.1 1"),
+     "fix b of style temp/rescale changes velocities of the water, which are its flow"),
+    ("FIX temp/* langevin* heat ehex", "0", fixed("fix b GROUP langevin 1 1 1 77"),
+     "fix b of style langevin changes velocities of the water, which are"),
     (*WALL, fixed("fix b GROUP wall/reflect xhi EDGE"), "fix b of style wall/reflect is no wall for water"),
     (*WALL, fixed("fix b GROUP wall/lj93 xhi EDGE 1 0.02 0.05"), "fix b of style wall/lj93 is no wall for water"),
     (*WALL, fixed("fix b GROUP wall/harmonic xhi EDGE 1 0.02 0.05"),
@@ -217,7 +221,7 @@ def test_water_must_not_be_moved_by_a_fix_that_does_not_advance_its_density(tmp_
     """Beside fix nve/sph/stationary of a floor, fix nve let it flow with the densities of the beginning."""
     lines = [line.replace("nve/sph", "nve") if line.startswith("fix move") else line for line in scene()]
     error, _ = said(tmp_path, lines + ["fix rest walls nve/sph/stationary"], 1)
-    assert "fix move of style nve, which does not advance its density: water is moved by fix nve/sph" in error
+    assert "fix move of style nve, which does not advance its density: water is moved by fix nve/sph, and" in error
 
 
 TWICE, THIN = "create_atoms 1 region again", "region floor block 0 0.8 -0.1 0 INF INF units box"
@@ -247,6 +251,27 @@ def test_densities_far_from_that_at_rest_are_warned_of(tmp_path, rho, says):
     error, warnings = said(tmp_path, lines)
     told = f"the densities of the fluid of fix eos are {rho} times its rho0"
     assert not error and (told in warnings) == says and "volumes of particles" not in warnings, (error, warnings)
+
+
+@pytest.mark.parametrize("water, again", [("density/continuity", True), ("density/summation", False)])
+def test_densities_go_on_once_in_a_step(tmp_path, water, again):
+    """fix numdiff let them go on once for each place that it tries: they were wrong by half, without a word."""
+    lines = [line.replace("density/continuity", water) for line in scene()] + ["fix b ours numdiff 1 1e-7", "thermo 1"]
+    assert said(tmp_path, lines, 0)[0] == ""
+    assert ("step 0: another command asks for the forces of this step again" in said(tmp_path, lines, 1)[0]) == again
+
+
+RESET = ["thermo_style custom step", "run 1", "reset_timestep 0", "run 1 pre no", "reset_timestep 0"]
+
+
+def test_a_run_may_have_the_steps_of_one_before(tmp_path):
+    assert said(tmp_path, scene() + RESET, 1)[0] == ""
+
+
+def test_rates_of_the_set_up_are_those_of_one_force(tmp_path):
+    """fix sph goes on with them: densities were off by more than they changed in 20 steps, without a word."""
+    lines = scene(move="fix move ours sph") + ["fix b ours numdiff 99 1e-7"]
+    assert "step 0: another command asks for the forces of this step again" in said(tmp_path, lines, 20)[0]
 
 
 FALL, PUSH = "fix fall ours gravity 1 vector 0 -1 0", "fix push ours addforce 0.01 0 0"

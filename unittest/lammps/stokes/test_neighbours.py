@@ -77,6 +77,7 @@ HOLDING = "FIX setforce freeze planeforce lineforce aveforce flow/gauss"
 PRINTED = "FIX temp/* momentum* oneway heat ehex viscosity thermal/conductivity wall/flow"
 THERMOSTATS = "FIX nvt* npt* nvk temp/* rigid/nvt* rigid/npt* bocs hmc"
 EXCHANGE = "FIX momentum* viscosity thermal/conductivity heat ehex"
+AGAIN, PERTURBED = "FIX numdiff*", "COMPUTE fep* born/matrix"
 PRESSURE = "COMPUTE pressure* stress/* centroid/stress/*"
 VANS = "hydro/vans 1 mesh 10 1 -9 fluid 1 1 gravity 0.1 0 -1 phi_max 0.6 area 100"
 BONDS = "\n".join(["bond_style harmonic", "bond_coeff 1 1 2.5"] + [f"create_bonds single/bond 1 {both}"
@@ -149,6 +150,9 @@ CASES = [
      "fix b of style flow/gauss takes the mean force away"),
     ("FIX propel/self", "OVERDAMPED", fixed("fix b GROUP propel/self velocity 1"),
      "fix b of style propel/self pushes spheres along their velocities"),
+    ("FIX propel/self", "OVERDAMPED | TURNING", fixed("fix b GROUP propel/self velocity 1", words=TURN,
+                                                      atoms="hybrid sphere dipole"),
+     "fix b of style propel/self pushes spheres along their velocities if"),
     (PRINTED, "OVERDAMPED", fixed("fix b GROUP momentum 1 linear 1 1 1"),
      "fix b of style momentum changes velocities, which without inertia follow"),
     (PRINTED, "OVERDAMPED", fixed("fix b GROUP temp/berendsen 1 1 1", before="velocity all create 1 77\n"
@@ -172,6 +176,14 @@ CASES = [
      "fix b of style damping/cundall makes forces larger that oppose"),
     ("FIX damping/cundall", "APPLIED", fixed(f"{INERTIA}\nfix b GROUP damping/cundall 0.1 0.1", "", before=TODAY),
      "fix b of style damping/cundall stands behind fix stokes_dynamics in the input"),
+    ("FIX ti/spring", "ADDED", fixed("fix b GROUP ti/spring 1 1 1", "fix move ours nve/sphere",
+                                     words=f"{WORDS} add_force yes"),
+     "fix b of style ti/spring scales all forces on its spheres"),
+    ("FIX ti/spring", "APPLIED", fixed(f"{INERTIA}\nfix b GROUP ti/spring 1 1 1", ""),
+     "fix b of style ti/spring stands behind fix stokes_dynamics in the input"),
+    (AGAIN, "ADDED | TURNING", fixed("fix b GROUP numdiff 1 1e-6\nthermo 1", "fix move ours nve/sphere",
+                                     words=f"{TURN} add_force yes"),
+     "fix b of style numdiff computes forces once more in the same step"),
     ("FIX hydro/vans sph/grains lb/*", "0", fixed("fix b GROUP lb/fluid", INERTIA, before=TODAY),
      "fix b of style lb/fluid drags spheres by a fluid of its own"),
     ("FIX addtorque", "TURNING", lambda ours: fixed("group one id %d\nfix b one addtorque 0 0 1" % (1 if ours else 4),
@@ -211,6 +223,8 @@ CASES = [
  
        ("ATOM ellipsoid", "0", prepared(f"{ROUND}\nset group GROUP shape 3 1 1", atoms=ELLIPSOID),
      "atom_style ellipsoid gives atom 1 a shape"),
+    ("ATOM line tri body", "0", prepared("set group GROUP tri 2.0", atoms="hybrid sphere tri"),
+     "atom_style tri gives atom 1 a shape of its own"),
  
        ("FIX gravity", "0", fixed("fix b GROUP gravity 1 vector 0 0 -1", before=f"{OVERLAP}\nset atom 3*4 mol 2\n"
                                   "set atom 3 x 5"),
@@ -276,8 +290,26 @@ def test_a_row_speaks_of_atoms_of_ours(simulation, tmp_path, case, ours):
 def test_every_row_has_a_case():
     tested = {case[:2] for case in CASES + ANYWHERE}
     told = [row for row in names_of_rows("stokes") if row[2] != "FINE"]
-    assert {row[:2] for row in told} == tested | {("PAIR hybrid/scaled*", "0")}
+    assert {row[:2] for row in told} == tested | {("PAIR hybrid/scaled*", "0"), (PERTURBED, "ADDED | TURNING")}
     assert all(kind.split()[0] in KINDS for kind, _ in tested)
+
+
+@pytest.mark.nothing_to_test_if(lammps_source(), "LAMMPS of 2021 has no compute born/matrix")
+@pytest.mark.parametrize("added", [True, False], ids=["pair style", "fix"])
+def test_a_compute_that_perturbs_adds_torques_of_the_pair_style_again(simulation, tmp_path, added):
+    """It has f put back, but not torque."""
+    ends = []
+    for more in ("", "compute c all born/matrix numdiff 1e-6 thermo_press\nfix b all ave/time 1 1 1 c_c[1]"):
+        lines = scene(TURN + " add_force yes" * added, boundary="p p p")
+        lines += ["set group ours omega 1 2 3", "fix move ours nve/sphere"] + ["fix drag ours stokes_dynamics"] * (
+            not added)
+        log = tmp_path / "log"
+        sim = simulation(log=log).commands(lines + more.splitlines()).run(4)
+        ends.append(sim.atom("omega"))
+        sim.command("log none")
+        told = "compute c of style born/matrix computes forces once more in the same step" in log.read_text()
+        assert told == (added and more != "")
+    assert (abs(ends[0] - ends[1]).max() > 1e-3) == added
 
 
 @pytest.mark.parametrize("factor, says", [
@@ -314,6 +346,7 @@ FINE = {
     "a wall before a step that it sees": scene() + ["fix b ours wall/reflect zlo -8", OVERDAMPED],
     "contacts damped before the fluid drags": scene(before=TODAY) + ["fix b ours damping/cundall 0.1 0.1"]
     + INERTIA.splitlines(),
+    "forces scaled before the fluid drags": scene() + ["fix b ours ti/spring 1 1 1"] + INERTIA.splitlines(),
     "spheres pushed along their dipoles": prepared("set group ours dipole 1 0 0", words=TURN,
                                                    atoms="hybrid sphere dipole")(True)
     + ["fix b ours propel/self dipole 1"],
