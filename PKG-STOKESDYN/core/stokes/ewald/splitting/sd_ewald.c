@@ -44,7 +44,8 @@ static splitting splitting_for(fall how, const sd_ewald_class *s, int width, dou
  * tight tolerances, since the grid gets finer while a near pair costs about the same; in an open box
  * with its padded grid 2.5 times as many. It need not reach the first images, nor beyond an open
  * box. (A range that is just an edge would by rounding hold one image of a sphere and not the
- * opposite one.) */
+ * opposite one.) What an open box's grid is finer by makes it longer, so that there are as many points
+ * of the grid as without. */
 static double natural_range(const sd_ewald_box *box, const splitting *by, double digits)
 {
   const double more = pow(digits / 3.0, by->fall == BAND ? 1.0 : 1.6);
@@ -52,7 +53,7 @@ static double natural_range(const sd_ewald_box *box, const splitting *by, double
   const double range = cbrt(3.0 * many * sd_ewald_volume(box) / (4.0 * SD_PI * by->spheres.count));
   if (by->farthest > 0.0) return fmin(by->times * range, by->farthest);
   if (box->periodic) return fmin(range, 0.97 * sd_ewald_narrowest(box));
-  return fmin(range, hypot(box->edge[0], hypot(box->edge[1], box->edge[2])));
+  return fmin(sd_splitting_finer(by) * range, hypot(box->edge[0], hypot(box->edge[1], box->edge[2])));
 }
 
 /* Spheres that overlap are within the range. */
@@ -66,7 +67,7 @@ static double least_range(const sd_ewald *e, const splitting *by, double y)
 static double range_in_gap(const sd_ewald_box *box, const splitting *by, double t, double y)
 {
   const double spacing = 3.0 * by->gap / (log(1.0 / t) + 3.0), largest = by->spheres.largest;
-  const double range = sd_splitting_band_spacings(box, by, t) * spacing;
+  const double range = sd_splitting_band_spacings(box, by, t) / sd_splitting_finer(by) * spacing;
   return fmax(range, fmax(y * largest / by->most, 2.0 * largest));
 }
 
@@ -182,6 +183,7 @@ static sd_status level_of(sd_ewald *e, const splitting *by)
 static sd_status one_level(sd_ewald *e, fall how, const sd_ewald_class *s, int width, double most)
 {
   splitting by = splitting_for(how, s, width, most);
+  by.open = !e->box.periodic;
   by.at_wall = e->images.wall.sign != 0;
   const sd_status status = level_of(e, &by);
   if (status != SD_OK || !sd_splitting_five_may_do(e, &by)) return status;

@@ -137,6 +137,15 @@ double sd_splitting_gaussian_spacing(double xi, double y)
 /* Windows of unlike spheres that stand in one vector of floats (sd_splitting_five_may_do) */
 enum { FEW_POINTS = 5 };
 
+/* In an open box the range is half as long again as in a periodic one with as many spheres, and what windows mistake
+ * of long waves grows with it and adds up under equal forces; a parabola (sd_window.h) makes it more. In slabs windows
+ * have no parabola, and walls make more of it. A grid that is finer by this, for the same range and band, and a larger
+ * beta leave half of it. Windows that are differentiated have a finer grid for that already, but in slabs. */
+double sd_splitting_finer(const splitting *by)
+{
+  return by->farthest > 0.0 || (by->open && by->fall == BAND && !by->slopes) ? 1.05 : 1.0;
+}
+
 /* The range of a band in spacings, and its waves over the shortest of the grid. From errors that were
  * measured over ranges, bands and windows: those of a Gaussian with windows of as many points, whose range
  * is 1.61 spacings times the digits. Windows that are differentiated mistake more; in an open box no mean
@@ -145,7 +154,7 @@ double sd_splitting_band_spacings(const sd_ewald_box *box, const splitting *by, 
 {
   const double digits = log10(1.0 / t), open = box->periodic ? 0.0 : 0.07;
   const double more = by->slopes && !equal_turn(by) ? (by->five ? 0.36 : 0.18) + 0.1 * digits : 0.0;
-  return 0.94 + (0.9 + 0.007 * digits) * digits + more + open;
+  return sd_splitting_finer(by) * (0.94 + (0.9 + 0.007 * digits) * digits + more + open);
 }
 
 double sd_splitting_spacing(const sd_ewald *e, const splitting *by, double t, double y)
@@ -156,7 +165,7 @@ double sd_splitting_spacing(const sd_ewald *e, const splitting *by, double t, do
 
 static double band_over_shortest(const splitting *by, double t)
 {
-  return (by->five ? 0.93 : by->slopes ? 0.98 : 0.96) - 0.01 * log10(1.0 / t);
+  return ((by->five ? 0.93 : by->slopes ? 0.98 : 0.96) - 0.01 * log10(1.0 / t)) / sd_splitting_finer(by);
 }
 
 /* H is like that of a Gaussian for long waves: y^2 is half of band times range. */
@@ -202,6 +211,7 @@ double sd_splitting_beta(const splitting *by)
   if (equal_turn(by)) return 2.3;
   if (by->five) return 2.5;
   if (by->at_wall) return 2.25;
+  if (by->equal && sd_splitting_finer(by) > 1.0) return 2.3;
   return (by->fall == BAND ? !by->equal : by->slopes) ? 2.42 : 2.25;
 }
 

@@ -23,8 +23,8 @@ typedef struct {
    * that is tried over that of a cube; is the slab a tower? */
   double farthest, gap, times;
   int tall;
-  /* are there images in a wall of an open box? */
-  int at_wall;
+  /* is the box open? Are there images in a wall of it? */
+  int open, at_wall;
   /* unlike spheres with windows of five points (sd_splitting_five_do) */
   int five;
 } splitting;
@@ -46,6 +46,9 @@ double sd_splitting_gaussian_y(const sd_ewald_box *box, double t);
 double sd_splitting_band_spacings(const sd_ewald_box *box, const splitting *by, double t);
 double sd_splitting_spacing(const sd_ewald *e, const splitting *by, double t, double y);
 double sd_splitting_gaussian_spacing(double xi, double y);
+
+/* How much finer the grid is where windows mistake more than elsewhere: range and band stay */
+double sd_splitting_finer(const splitting *by);
 
 /* The window: its points, and beta over these */
 int sd_splitting_points(double t);
