@@ -70,10 +70,10 @@ static void six(int columns, const long *first, const int *row, const float *val
 
 /* Number by number */
 #if SD_LANES < 4
-INLINE void plain(int width, int step, int columns, const long *first, const int *row,
-                  const float *value, const double *in, double *out)
+INLINE void plain(int width, int columns, const long *first, const int *row, const float *value, const double *in,
+                  double *out)
 {
-  const int size = sd_sparse_floats(width), lda = width == 3 ? 4 : 6;
+  const int size = sd_sparse_floats(width), lda = width == 3 ? 4 : 6, step = width == 3 ? 4 : 8;
   for (int k = 0; k < columns; k++) {
     double t[6] = {0.0};
     for (long l = first[k]; l < first[k + 1]; l++)
@@ -90,14 +90,14 @@ INLINE void plain(int width, int step, int columns, const long *first, const int
 static void six(int columns, const long *first, const int *row, const float *value,
                 const double *in, double *out)
 {
-  plain(6, 8, columns, first, row, value, in, out);
+  plain(6, columns, first, row, value, in, out);
 }
 #endif
 #if SD_LANES == 1
 static void sparse_three(int columns, const long *first, const int *row, const float *value,
                          const double *in, double *out)
 {
-  plain(3, 4, columns, first, row, value, in, out);
+  plain(3, columns, first, row, value, in, out);
 }
 #endif
 

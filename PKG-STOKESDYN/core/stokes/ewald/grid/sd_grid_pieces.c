@@ -2,15 +2,15 @@
 
 #include "sd_grid_internal.h"
 
-/* Part k of the points lo ... lo + n - 1 that lies within one period and within [begin, end) of it:
- * its offset in the brick, its place, its points; 0: there is no part k. */
-static int gp_part_of(int lo, int n, int period, int begin, int end, int k, int *at, int *to)
+/* Part k of the points lo ... lo + n - 1 that lies within one period and within a range of it: its offset in the
+ * brick, its place, its points; -1: there is no part k. */
+static int gp_part_of(int lo, int n, int period, const int range[2], int k, int *at, int *to)
 {
   const int first = lo >= 0 ? lo / period : -((period - 1 - lo) / period);
   const int origin = (first + k) * period;
   if (origin >= lo + n) return -1;
-  const int from = lo > origin + begin ? lo : origin + begin;
-  const int till = lo + n < origin + end ? lo + n : origin + end;
+  const int from = lo > origin + range[0] ? lo : origin + range[0];
+  const int till = lo + n < origin + range[1] ? lo + n : origin + range[1];
   *at = from - lo;
   *to = from - origin;
   return till > from ? till - from : 0;
@@ -20,20 +20,16 @@ static int gp_part_of(int lo, int n, int period, int begin, int end, int k, int 
  * the other end of the message that they go by */
 static int pieces_of(const sd_grid *g, const int *brick, int pencils, int rank, sd_piece *list)
 {
-  const int *lo = brick, *n = brick + 3;
+  const int *lo = brick, *n = brick + 3, *size = g->size, whole[2] = {0, size[2]};
   int x[2], y[2];
   sd_grid_range_of(g, SD_SHARED_X, pencils, x);
   sd_grid_range_of(g, SD_SHARED_LINES, pencils, y);
   int count = 0;
   sd_piece p = {.rank = rank};
   if (n[0] == 0 || n[1] == 0 || n[2] == 0) return 0;
-  for (int i = 0; (p.n[0] = gp_part_of(lo[0], n[0], g->size[0], x[0], x[1], i, p.at, p.to)) >= 0; i++)
-    for (int j = 0;
-         (p.n[1] = gp_part_of(lo[1], n[1], g->size[1], y[0], y[1], j, p.at + 1, p.to + 1)) >= 0;
-         j++)
-      for (int k = 0;
-           (p.n[2] = gp_part_of(lo[2], n[2], g->size[2], 0, g->size[2], k, p.at + 2, p.to + 2)) >= 0;
-           k++) {
+  for (int i = 0; (p.n[0] = gp_part_of(lo[0], n[0], size[0], x, i, p.at, p.to)) >= 0; i++)
+    for (int j = 0; (p.n[1] = gp_part_of(lo[1], n[1], size[1], y, j, p.at + 1, p.to + 1)) >= 0; j++)
+      for (int k = 0; (p.n[2] = gp_part_of(lo[2], n[2], size[2], whole, k, p.at + 2, p.to + 2)) >= 0; k++) {
         if (p.n[0] == 0 || p.n[1] == 0 || p.n[2] == 0) continue;
         if (list) list[count] = p;
         count++;
@@ -45,7 +41,7 @@ static int pieces_of(const sd_grid *g, const int *brick, int pencils, int rank, 
 static int points_within(int lo, int n, int period, const int *range)
 {
   int at, to, part, points = 0;
-  for (int k = 0; n > 0 && (part = gp_part_of(lo, n, period, range[0], range[1], k, &at, &to)) >= 0; k++)
+  for (int k = 0; n > 0 && (part = gp_part_of(lo, n, period, range, k, &at, &to)) >= 0; k++)
     points += part;
   return points;
 }
