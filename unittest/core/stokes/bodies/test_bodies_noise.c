@@ -4,6 +4,9 @@
 #include "unit_normals.h"
 
 #include "sd_bodies_noise.h"
+#include "sd_constants.h"
+#include "sd_ewald_kernels.h"
+#include "sd_ewald_pairs.h"
 #include "sd_lubrication_noise.h"
 
 /* Two clumps of an L and two free spheres */
@@ -129,6 +132,45 @@ static void roots_are_roots(void **state)
   flock_free(f);
 }
 
+/* Where the sum is split they are those of the near part, as the engine has it: here of spheres with torques, of unlike
+ * radii, without images. */
+static void roots_of_a_split_sum_are_of_its_near_part(void **state)
+{
+  (void) state;
+  enum { M = 3, N = 6 * M };
+  static const double X[3 * M] = {0, 0, 0, 2, 0, 0, 0, 2.1, 0}, a[M] = {1, 1, 0.8}, one[M] = {1, 1, 1};
+  const sd_ewald_box box = {.periodic = 1, .edge = {20, 20, 20}};
+  const sd_ewald_sizes sizes = {.all = {M, 2.64, 2.4096, 1.0}};
+  flock *f = flock_create(M, X, a, 1, 1, 0, 1.0);
+  const sd_spheres spheres = {f->body.x, f->body.radius, one};
+  const sd_groups none = {0};
+  sd_ewald how;
+  sd_ewald_pairs near = {0};
+  sd_body_root root;
+  assert_int_equal(sd_ewald_choose_positive(&box, &sizes, 6, 1e-10, SD_EWALD_POSITIVE, &how), SD_OK);
+  assert_int_equal(sd_body_root_create(&f->body, 1.0, &how, &root), SD_OK);
+  assert_int_equal(root.n, N);
+  sd_ewald_pairs_create(&near, &how, SD_KERNELS_OF(sd_ewald, plain, SD_ISA_PLAIN), 6);
+  assert_int_equal(sd_ewald_pairs_place(&near, &spheres, &none, M, M, 0), SD_OK);
+  for (int q = 0; q < N; q++) {
+    double F[N] = {0.0}, u[N];
+    F[q] = 1.0;
+    assert_int_equal(sd_ewald_pairs_load(&near, M, F, NULL, NULL, NULL), SD_OK);
+    sd_ewald_pairs_apply(&near);
+    sd_ewald_pairs_take(&near, M, F, NULL, NULL, NULL, u);
+    u[q] += q % 6 < 3 ? 1.0 / (6.0 * SD_PI * a[q / 6]) : 1.0 / (8.0 * SD_PI * pow(a[q / 6], 3.0));
+    for (int p = 0; p < N; p++) {
+      double square = 0.0;
+      for (int k = 0; k < N; k++) square += root.root[p * N + k] * root.root[k * N + q];
+      square /= (p % 6 > 2 ? root.length : 1.0) * (q % 6 > 2 ? root.length : 1.0);
+      CHECK_NEAR(square, u[p], 1e-10);
+    }
+  }
+  sd_ewald_pairs_free(&near);
+  sd_body_root_free(&root);
+  flock_free(f);
+}
+
 static void films_take_their_part(void **state)
 {
   (void) state;
@@ -150,6 +192,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(clumps_have_the_covariance_of_their_mobility),
       cmocka_unit_test(roots_are_roots),
+      cmocka_unit_test(roots_of_a_split_sum_are_of_its_near_part),
       cmocka_unit_test(films_take_their_part),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -4,6 +4,7 @@
 
 #include "table.h"
 
+#include "sd_multiblob_shape.h"
 #include "sd_multiblob_wall.h"
 #include "sd_wall_film.h"
 
@@ -107,6 +108,30 @@ static void lone_sphere_is_exact(void **state)
   print_message("lone sphere: off by %.2g Stokes drags, settling by %.2g, in a flow by %.2g\n",
                 worst.all, worst.settling, worst.flow);
   assert_true(worst.all < 0.04 && worst.settling < 5e-4 && worst.flow < 2e-4);
+}
+
+/* The body's own blocks beside the wall are the inverse of the matrix of its points, images and one-body addition
+ * contained: others would cost products, no more. */
+static void own_blocks_have_images(void **state)
+{
+  (void) state;
+  const double x[3] = {0.3, -0.4, 1.3}, a = 0.7;
+  double turn[9];
+  uint64_t seed = 3;
+  random_rotation(&seed, turn);
+  blobs *s = above_wall(12, 1, 1, x, &a, turn);
+  const sd_multiblob_spheres sphere = {.x = x, .a = &a, .turn = turn, .n = 1};
+  sd_body_shape shape;
+  assert_int_equal(sd_multiblob_wall_shape(&s->m, &ground, &sphere, x, &shape), SD_OK);
+  assert_int_equal(3 * shape.m, s->N);
+  for (int p = 0; p < s->N; p++)
+    for (int q = 0; q < s->N; q++) {
+      double unit = 0.0;
+      for (int k = 0; k < s->N; k++) unit += shape.inverse[p * s->N + k] * s->M[k * s->N + q];
+      CHECK_NEAR(unit, p == q, 1e-12);
+    }
+  sd_body_shape_free(&shape);
+  blobs_free(s);
 }
 
 /* B >= 0 at every gap, and it ends at a gap of 2 without a jump. */
@@ -273,7 +298,8 @@ static void layers_are_definite(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(lone_sphere_is_exact), cmocka_unit_test(film_is_positive_and_ends),
+      cmocka_unit_test(lone_sphere_is_exact), cmocka_unit_test(own_blocks_have_images),
+      cmocka_unit_test(film_is_positive_and_ends),
       cmocka_unit_test(any_side), cmocka_unit_test(groups), cmocka_unit_test(layers_are_definite)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,8 @@
 #include "clouds.h"
 
 #include "in_clumps.h"
+#include "sd_constants.h"
+#include "sd_precondition_internal.h"
 
 #include <string.h>
 
@@ -406,6 +408,34 @@ static void cut_off_is_refused_with_preconditioner(void **state)
   scene_free(&s);
 }
 
+/* What preconditioners are made of is the mobility of spheres above a wall, images and all: another matrix would only
+ * cost products. */
+static void factors_above_a_wall_have_images(void **state)
+{
+  (void) state;
+  enum { M = 4 };
+  static const double x[3 * M] = {0, 0, 1.1, 2.5, 0.3, 0.9, 0.4, 2.2, 2.0, 1.9, 2.1, 1.3}, w[M] = {1, 1, 1, 1};
+  static const double a[M] = {1.0, 0.7, 0.9, 0.8};
+  static const int member[M] = {2, 0, 3, 1};
+  const sd_law law = {.tensor = SD_TENSOR_RPY, .wall = {.axis = 2, .sign = 1, .at = -0.1}};
+  const sd_spheres spheres = {x, a, w};
+  for (int width = 3; width <= 6; width += 3) {
+    const int N = width * M;
+    double L[36 * M * M], mobility[36 * M * M];
+    const sd_unit_submatrix c = {&law, &spheres, member, M, width};
+    assert_int_equal(sd_unit_cholesky(&c, L), SD_OK);
+    sd_wall_matrix(&law.wall, M, width, x, a, mobility);
+    for (int p = 0; p < N; p++)
+      for (int q = 0; q <= p; q++) {
+        const int i = member[p / width], j = member[q / width], d = p % width, e = q % width;
+        const double ai = d < 3 ? 6.0 * a[i] : 8.0 * pow(a[i], 3.0), aj = e < 3 ? 6.0 * a[j] : 8.0 * pow(a[j], 3.0);
+        double product = 0.0;
+        for (int k = 0; k <= q; k++) product += L[p + N * k] * L[q + N * k];
+        CHECK_NEAR(product, SD_PI * sqrt(ai * aj) * mobility[(width * i + d) * N + width * j + e], 1e-13);
+      }
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -421,6 +451,7 @@ int main(void)
       cmocka_unit_test(nearly_coincident_spheres_keep_a_good_factor),
       cmocka_unit_test(positions_that_are_no_numbers_are_refused),
       cmocka_unit_test(cut_off_is_refused_with_preconditioner),
+      cmocka_unit_test(factors_above_a_wall_have_images),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
