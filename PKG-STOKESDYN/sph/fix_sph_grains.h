@@ -74,9 +74,8 @@ class FixSphGrains : public SphFix {
   std::vector<double> a, V, M;
   double total[3] = {0.0, 0.0, 0.0}, largest = 0.0;
   sd_sph_grains are_grains() const { return {a.data(), V.data(), wet.data()}; }
-  /* [3 grains]: rows of one of LAMMPS's arrays of vectors; [3 atoms], ghosts too */
+  /* [3 grains]: rows of one of LAMMPS's arrays of vectors */
   std::vector<double> rows_of_grains(double **vectors) const;
-  std::vector<double> velocities() const;
   void check_scene();
   void look_at_strangers();
   bool is_too_large(double diameter) const;

@@ -36,7 +36,7 @@ void FixSphGrains::find_fractions()
     weigh();
     sum_fractions();
   }
-  mean_phi = around.mean_of(phi, 1);
+  mean_phi = around.mean_of(phi.data(), 1);
   check_fractions();
   if (update->setupflag) displace();
 }
@@ -90,13 +90,6 @@ std::vector<double> FixSphGrains::rows_of_grains(double **vectors) const
   std::vector<double> rows(3 * around.grains.size() + 1);
   for (size_t j = 0; j < around.grains.size(); j++) std::copy_n(vectors[around.grains[j]], 3, &rows[3 * j]);
   return rows;
-}
-
-std::vector<double> FixSphGrains::velocities() const
-{
-  std::vector<double> v(3 * (size_t) (atom->nlocal + atom->nghost) + 1, 0.0);
-  if (v.size() > 1) std::copy_n(atom->v[0], v.size() - 1, v.data());
-  return v;
 }
 
 const double *FixSphGrains::mixture(const double *v)
@@ -205,7 +198,7 @@ void FixSphGrains::stresses(std::vector<double> &F)
     }
   }
   forward(forces.data(), 3);
-  std::vector<double> on_water = around.at_points(forces, 3);
+  std::vector<double> on_water = around.at_points(forces.data(), 3);
   const sd_sph_around list = around.list();
   const sd_sph_grains of_grains = are_grains();
   sd_sph_grain_stresses(&list, &of_grains, (int) around.points.size(), volume.data(), on_water.data(), F.data());
@@ -214,7 +207,7 @@ void FixSphGrains::stresses(std::vector<double> &F)
 /* Of the water at the places of grains, and of these */
 FixSphGrains::Slip FixSphGrains::slip_of_now()
 {
-  return {around.mean_of(velocities(), 3), rows_of_grains(atom->v)};
+  return {around.mean_of(Sph::numbers(atom->v), 3), rows_of_grains(atom->v)};
 }
 
 /* That at the end of the step, which all forces but drag make: those of atoms, and the stresses F of grains */
@@ -222,10 +215,11 @@ FixSphGrains::Slip FixSphGrains::slip_without_drag(const std::vector<double> &F)
 {
   const double dt = update->dt;    // at a setup as well: that force begins the first step
   const std::vector<double> on_grains = rows_of_grains(atom->f);
-  std::vector<double> water = velocities();
-  sd_sph_grain_push(atom->nlocal, dt, atom->nlocal ? atom->f[0] : nullptr, nullptr, atom->rmass, water.data());
+  std::vector<double> water(3 * (size_t) (atom->nlocal + atom->nghost) + 1);
+  std::copy_n(Sph::numbers(atom->v), 3 * (size_t) atom->nlocal, water.data());
+  sd_sph_grain_push(atom->nlocal, dt, Sph::numbers(atom->f), nullptr, atom->rmass, water.data());
   forward(water.data(), 3);
-  Slip slip = {around.mean_of(water, 3), rows_of_grains(atom->v)};
+  Slip slip = {around.mean_of(water.data(), 3), rows_of_grains(atom->v)};
   sd_sph_grain_push((int) around.grains.size(), dt, on_grains.data(), F.data(), M.data(), slip.grains.data());
   return slip;
 }
@@ -234,9 +228,8 @@ FixSphGrains::Slip FixSphGrains::slip_without_drag(const std::vector<double> &F)
 std::vector<double> FixSphGrains::drag_factors()
 {
   const int n = (int) around.grains.size();
-  const size_t all = atom->nlocal + atom->nghost;
   std::vector<double> k(n + 1), at_grains(n + 1);
-  const std::vector<double> rho = around.mean_of(std::vector<double>(atom->rho, atom->rho + all), 1);
+  const std::vector<double> rho = around.mean_of(atom->rho, 1);
   sd_sph_grain_phi(n, mean_phi.data(), own.data(), at_grains.data());
   const sd_sph_grains of_grains = are_grains();
   const Slip now = slip_of_now();
@@ -262,7 +255,7 @@ void FixSphGrains::drags(const std::vector<double> &F, std::vector<double> &D)
   for (int i = 0; i < atom->nlocal; i++)
     if (slowed[i] != 0.0) slowed[i] /= atom->rmass[i];
   forward(slowed.data(), 1);
-  const std::vector<double> slowed_points = around.at_points(slowed, 1);
+  const std::vector<double> slowed_points = around.at_points(slowed.data(), 1);
   sd_sph_grain_drags(&list, update->dt, &slip, M.data(), k.data(), slowed_points.data(), D.data());
   give_back(D);
 }

@@ -67,11 +67,11 @@ bool WaterAround::is_beside_wall(size_t grain) const
   return std::any_of(&particle[first[grain]], &particle[first[grain + 1]], [this](int p) { return walls[p]; });
 }
 
-std::vector<double> WaterAround::at_points(const std::vector<double> &of_atoms, int columns) const
+std::vector<double> WaterAround::at_points(const double *of_atoms, int columns) const
 {
   std::vector<double> out(columns * points.size() + 1, 0.0);
   for (size_t p = 0; p < points.size(); p++)
-    std::copy_n(&of_atoms[columns * (size_t) points[p]], columns, &out[columns * p]);
+    std::copy_n(of_atoms + columns * (size_t) points[p], columns, &out[columns * p]);
   return out;
 }
 
@@ -83,7 +83,7 @@ std::vector<double> WaterAround::at_atoms(const std::vector<double> &of_points, 
   return out;
 }
 
-std::vector<double> WaterAround::mean_of(const std::vector<double> &of_atoms, int columns)
+std::vector<double> WaterAround::mean_of(const double *of_atoms, int columns)
 {
   const sd_sph_around around = list();
   const std::vector<double> there = at_points(of_atoms, columns);

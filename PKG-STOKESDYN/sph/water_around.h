@@ -34,10 +34,10 @@ class WaterAround : protected LAMMPS_NS::Pointers {
   bool is_beside_wall(size_t grain) const;
 
   /* Rows of atoms as rows of points, and back: 0 of all other atoms */
-  std::vector<double> at_points(const std::vector<double> &of_atoms, int columns) const;
+  std::vector<double> at_points(const double *of_atoms, int columns) const;
   std::vector<double> at_atoms(const std::vector<double> &of_points, int columns) const;
   /* Rows of grains: means over the water around them, of 1 or 3 columns */
-  std::vector<double> mean_of(const std::vector<double> &of_atoms, int columns);
+  std::vector<double> mean_of(const double *of_atoms, int columns);
 
  private:
   sd_cells cells = {};

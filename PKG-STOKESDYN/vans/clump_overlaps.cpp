@@ -38,7 +38,7 @@ bool ClumpOverlaps::are_new(int bits)
   return now != before;
 }
 
-std::vector<ClumpOverlaps::Member> ClumpOverlaps::members(int bits, bool unwrapped) const
+std::vector<std::vector<ClumpOverlaps::Member>> ClumpOverlaps::clumps(int bits, bool unwrapped) const
 {
   std::vector<Member> mine;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -51,40 +51,34 @@ std::vector<ClumpOverlaps::Member> ClumpOverlaps::members(int bits, bool unwrapp
   std::sort(all.begin(), all.end(), [](const Member &p, const Member &q) {
     return p.molecule != q.molecule ? p.molecule < q.molecule : p.tag < q.tag;
   });
-  return all;
-}
-
-/* The members of each molecule, which stand one after the other */
-template <class Look> void ClumpOverlaps::each_clump(const std::vector<Member> &all, const Look &look)
-{
-  for (size_t begin = 0, end; begin < all.size(); begin = end) {
-    for (end = begin; end < all.size() && all[end].molecule == all[begin].molecule; end++) {}
-    look(std::vector<Member>(all.begin() + begin, all.begin() + end));
+  std::vector<std::vector<Member>> clumps;
+  for (const Member &m : all) {
+    if (clumps.empty() || clumps.back().front().molecule != m.molecule) clumps.emplace_back();
+    clumps.back().push_back(m);
   }
+  return clumps;
 }
 
 tagint ClumpOverlaps::first(int bits) const
 {
   constexpr double DEEP = 0.9;    // at 0.9 (a + b) two equal spheres share 0.7 % of their volume
-  tagint found = 0;
-  each_clump(members(bits, true), [&](std::vector<Member> clump) {
+  for (auto &clump : clumps(bits, true)) {
     std::vector<double> x, a;
-    if (found != 0) return;
     std::sort(clump.begin(), clump.end(), [](const Member &p, const Member &q) { return p.x[0] < q.x[0]; });
     for (const Member &m : clump) {
       x.insert(x.end(), m.x, m.x + 3);
       a.push_back(m.a);
     }
-    if (sd_vans_any_nearer((int) clump.size(), x.data(), a.data(), DEEP)) found = clump[0].molecule;
-  });
-  return found;
+    if (sd_vans_any_nearer((int) clump.size(), x.data(), a.data(), DEEP)) return clump[0].molecule;
+  }
+  return 0;
 }
 
 /* Seen from each member the others stand at their nearest image: what overlaps it is near. */
 std::map<tagint, double> ClumpOverlaps::lost(int bits) const
 {
   std::map<tagint, double> lost;
-  each_clump(members(bits, false), [&](const std::vector<Member> &clump) {
+  for (const auto &clump : clumps(bits, false)) {
     const size_t n = clump.size();
     std::vector<double> x(3 * n), a(n);
     for (size_t k = 0; k < n; k++) {
@@ -98,7 +92,7 @@ std::map<tagint, double> ClumpOverlaps::lost(int bits) const
         voice.fail_one("keyword overlap: out of memory for a clump of " + std::to_string(n) + " members");
       lost[clump[k].tag] = 1.0 - share;
     }
-  });
+  }
   return lost;
 }
 

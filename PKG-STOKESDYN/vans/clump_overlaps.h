@@ -35,9 +35,8 @@ class ClumpOverlaps : protected LAMMPS_NS::Pointers {
     LAMMPS_NS::tagint molecule, tag;
     double x[3], a;
   };
-  /* Of all ranks, by molecules; the places are in the box, or unwrapped */
-  std::vector<Member> members(int bits, bool unwrapped) const;
-  template <class Look> static void each_clump(const std::vector<Member> &all, const Look &look);
+  /* Of all ranks, by molecules; the places of their members are in the box, or unwrapped */
+  std::vector<std::vector<Member>> clumps(int bits, bool unwrapped) const;
 };
 
 }    // namespace StokesDyn
