@@ -301,7 +301,8 @@ int sd_radial_fit(const sd_ewald *e, int width, double *coefficient)
     }
     degree = k;
   }
-  if (degree > SD_RADIAL_TERMS - 1) degree = SD_RADIAL_TERMS - 1;
+  const int terms = e->single ? SD_RADIAL_SINGLE_TERMS : SD_RADIAL_TERMS;
+  if (degree > terms - 1) degree = terms - 1;
   memset(coefficient, 0, SD_RADIALS * SD_RADIAL_TERMS * sizeof(double));
   for (int f = 0; f < SD_RADIALS; f++)
     sd_chebyshev_powers(series[f], degree, coefficient + f * SD_RADIAL_TERMS);

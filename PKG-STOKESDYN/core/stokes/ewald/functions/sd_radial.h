@@ -30,8 +30,9 @@ SD_BEGIN_C
 /* In this order everywhere; J over r^2 and K over r: smooth and even in r, as all of them are here */
 enum { SD_I0, SD_J0, SD_I1, SD_J1, SD_I2, SD_J2, SD_K0, SD_K1, SD_RADIALS };
 
-/* Terms of the longest polynomial that stands for one of them */
-enum { SD_RADIAL_TERMS = 40 };
+/* Terms of the longest polynomial that stands for one of them; and where sums are of floats, whose tolerances
+ * are loose */
+enum { SD_RADIAL_TERMS = 40, SD_RADIAL_SINGLE_TERMS = 21 };
 
 /* H(k^2) of the wave part, less what a smoother splitting has taken */
 double sd_ewald_wave_screen(const sd_ewald *e, double k2);

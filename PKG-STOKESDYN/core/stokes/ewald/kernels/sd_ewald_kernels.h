@@ -71,17 +71,19 @@ typedef struct {
   long stride;
 } sd_group_places;
 
-/* Degrees that there are kernels for: the polynomial is filled up with zeros. */
-#define SD_NEAR_DEGREES(_) _(6) _(7) _(8) _(11) _(14) _(17) _(20) _(24) _(29) _(39)
+/* Degrees that there are kernels for, of floats and of doubles: the polynomial is filled up with zeros. */
+#define SD_NEAR_SINGLE_DEGREES(_) _(6) _(7) _(8) _(11) _(14) _(17) _(20)
+#define SD_NEAR_DEGREES(_) SD_NEAR_SINGLE_DEGREES(_) _(24) _(29) _(39)
 
 /* The first of them that is enough */
 static inline int sd_near_degree(int least)
 {
+  int degree = 0;
 #define OF_DEGREE(d) \
-  if ((d) >= least) return d;
+  if (degree < least) degree = d;
   SD_NEAR_DEGREES(OF_DEGREE)
 #undef OF_DEGREE
-  return SD_RADIAL_TERMS - 1;
+  return degree;
 }
 
 /* Near images: each pair of a sphere and an image once, for both its spheres, in the axes of the wall,

@@ -85,7 +85,7 @@ COPIED void near_group_forces(int equal, int degree, const sd_near_part *p, cons
   {                                                                                \
     near_group_forces(0, d, p, g);                                                 \
   }
-SD_NEAR_DEGREES(OF_DEGREE)
+ALL_DEGREES(OF_DEGREE)
 #undef OF_DEGREE
 
 static void near_groups(const sd_near_part *p, const sd_near_groups *g)
@@ -95,7 +95,7 @@ static void near_groups(const sd_near_part *p, const sd_near_groups *g)
     (p->equal ? groups_equal_##d : groups_any_##d)(p, g);         \
     return;                                                       \
   }
-  SD_NEAR_DEGREES(OF_DEGREE)
+  ALL_DEGREES(OF_DEGREE)
 #undef OF_DEGREE
 }
 

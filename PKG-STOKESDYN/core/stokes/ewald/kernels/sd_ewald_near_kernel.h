@@ -311,25 +311,19 @@ COPIED void near_torques(int equal, int degree, const sd_near_part *p)
 }
 
 /* A copy of each for each degree: loops of a length that is not known cost twice as much. */
-#define OF_DEGREE(d)                                  \
-  static void near_equal_##d(const sd_near_part *p)   \
-  {                                                   \
-    near_forces(1, d, p);                             \
-  }                                                   \
-  static void near_any_##d(const sd_near_part *p)     \
-  {                                                   \
-    near_forces(0, d, p);                             \
-  }                                                   \
-  static void turn_equal_##d(const sd_near_part *p)   \
-  {                                                   \
-    near_torques(1, d, p);                            \
-  }                                                   \
-  static void turn_any_##d(const sd_near_part *p)     \
-  {                                                   \
-    near_torques(0, d, p);                            \
-  }
-SD_NEAR_DEGREES(OF_DEGREE)
+#ifdef SD_SINGLE
+#define ALL_DEGREES SD_NEAR_SINGLE_DEGREES
+#else
+#define ALL_DEGREES SD_NEAR_DEGREES
+#endif
+#define COPY(name, loop, equal, d) \
+  static void name##_##d(const sd_near_part *p) { loop(equal, d, p); }
+#define OF_DEGREE(d)                                                          \
+  COPY(near_equal, near_forces, 1, d) COPY(near_any, near_forces, 0, d)       \
+  COPY(turn_equal, near_torques, 1, d) COPY(turn_any, near_torques, 0, d)
+ALL_DEGREES(OF_DEGREE)
 #undef OF_DEGREE
+#undef COPY
 
 static void near_part(const sd_near_part *p)
 {
@@ -341,6 +335,6 @@ static void near_part(const sd_near_part *p)
       (p->equal ? near_equal_##d : near_any_##d)(p);    \
     return;                                             \
   }
-  SD_NEAR_DEGREES(OF_DEGREE)
+  ALL_DEGREES(OF_DEGREE)
 #undef OF_DEGREE
 }

@@ -182,6 +182,33 @@ static void polynomials_keep_means(void **state)
   }
 }
 
+/* Kernels of floats end at a degree, so that no scene with sums of floats may need a longer polynomial, and two terms
+ * are left: few or many spheres, thin or overlapping, alike or with some that are up to a hundred times as large. */
+static void floats_do_with_short_polynomials(void **state)
+{
+  (void) state;
+  uint64_t seed = 5;
+  int scenes = 0, longest = 0;
+  for (int k = 0; k < 300; k++) {
+    const double many = floor(pow(10.0, uniform(&seed, 0, 6))), large = k % 3 ? pow(10.0, uniform(&seed, 0, 2)) : 1.0;
+    const double few = ceil(many * pow(10.0, uniform(&seed, -4, 0))), a2 = large * large;
+    const double side = cbrt((many + few * a2 * large) / pow(10.0, uniform(&seed, -4, 0.5)));
+    const sd_ewald_sizes sizes = {.all = {many + few, many + few * a2, many + few * a2 * a2, large}};
+    const sd_ewald_box box = {.periodic = k % 2, .edge = {side, 2 * side, 0.5 * side}};
+    const int width = k % 4 < 2 ? 3 : 6;
+    double c[SD_RADIALS][SD_RADIAL_TERMS];
+    sd_ewald e;
+    assert_int_equal(sd_ewald_choose(&box, &sizes, width, pow(10.0, uniform(&seed, -5, -4)), &e), SD_OK);
+    scenes += e.single;
+    if (!e.single) continue;
+    e.single = 0; /* as many terms as there should be */
+    const int degree = sd_radial_fit(&e, width, c[0]);
+    longest = degree > longest ? degree : longest;
+    assert_true(degree < SD_RADIAL_SINGLE_TERMS - 2);
+  }
+  assert_true(scenes > 100 && longest > SD_RADIAL_SINGLE_TERMS - 8);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -191,6 +218,7 @@ int main(void)
       cmocka_unit_test(functions_of_a_band_are_the_integrals),
       cmocka_unit_test(tail_of_a_band_is_the_rest_of_the_mean),
       cmocka_unit_test(polynomials_keep_means),
+      cmocka_unit_test(floats_do_with_short_polynomials),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
