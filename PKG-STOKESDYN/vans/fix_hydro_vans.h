@@ -69,6 +69,8 @@ class FixHydroVans : public RowsFix {
    * since the last coupling. */
   LAMMPS_NS::bigint last_step = -1;
   double elapsed = 0.0;
+  /* what the last solve had for all grains; not finite: not known, from older restart files */
+  double handed = 0.0;
   VansFluctuations fluctuations;
   struct {
     double radius = 0.0, density = 0.0;
@@ -138,7 +140,8 @@ class FixHydroVans : public RowsFix {
   void end_interval();
   void solve_on_demand(double T, double dt);
   VansStream::Given impulses(double ratio);
-  void hand_over();
+  double due(int i, double T, double ratio);
+  void hand_over(double T, double ratio);
   void renew_fluctuations(double time, bool first);
   void count_overlaps();
 

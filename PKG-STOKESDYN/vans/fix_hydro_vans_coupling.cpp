@@ -125,6 +125,12 @@ void FixHydroVans::tell_waves()
                        " breaks up into waves and becomes too high: use slices of three diameters");
 }
 
+/* What the last solve, over the time T, has for atom i */
+double FixHydroVans::due(int i, double T, double ratio)
+{
+  return sd_vans_account_due(account(i), T, (atom->mask[i] & groupbit) ? 0.5 * ratio * update->dt : 0.0);
+}
+
 /* What the grains got from the water since the last coupling: those of the group as booked step by
  * step; the others, which a fixed bed is made of, as the law has it now. ratio: time of the
  * water over that of the grains. */
@@ -132,12 +138,13 @@ VansStream::Given FixHydroVans::impulses(double ratio)
 {
   const size_t N = stream.ncell();
   const int n = atom->nlocal;
-  std::vector<double> mine(N + 2, 0.0), all(N + 2), rest(n + 1, 0.0);
+  std::vector<double> mine(N + 3, 0.0), all(N + 3), rest(n + 1, 0.0);
   take.assign(n, 0);
   for (int i = 0; i < n; i++) {
     if (!memo.has(i)) continue;
     sd_vans_account *books = account(i);
     take[i] = (atom->mask[i] & groupbit) && atom->radius[i] > 0.0;
+    mine[N + 2] += due(i, ratio * elapsed, ratio);
     rest[i] = sd_vans_account_rest(books, elapsed, update->dt, ratio);
     if (take[i]) mine[N] += books->impulse;
     books->impulse = 0.0;
@@ -160,6 +167,7 @@ VansStream::Given FixHydroVans::impulses(double ratio)
   VansStream::Given given;
   given.all = ratio * (all[N] + all[N + 1]);
   given.others = ratio * all[N + 1];
+  if (std::isfinite(handed)) given.lost = handed - all[N + 2];
   given.back.assign(all.begin(), all.begin() + N);
   return given;
 }
@@ -170,7 +178,7 @@ void FixHydroVans::couple(double T, double dt)
   VansStream::Given given;
   if (set.conserve && elapsed > 0.0) given = impulses(T / elapsed);
   stream.solve(area(), T, dt, given);
-  if (!given.back.empty()) hand_over();
+  if (!given.back.empty()) hand_over(T, T / elapsed);
 }
 
 void FixHydroVans::feel_pressure()
@@ -216,7 +224,7 @@ void FixHydroVans::solve_on_demand(double T, double dt)
 }
 
 /* To each grain what the solve took from the water for it. */
-void FixHydroVans::hand_over()
+void FixHydroVans::hand_over(double T, double ratio)
 {
   const int n = atom->nlocal;
   select(average_bit | groupbit);
@@ -224,13 +232,16 @@ void FixHydroVans::hand_over()
   std::vector<double> shear(n + 1), foreseen(n + 1);
   sd_vans_gather(&set.mesh, set.point, &all, stream.shear_density.data(), shear.data());
   sd_vans_gather(&set.mesh, set.point, &all, stream.foreseen_density.data(), foreseen.data());
+  double mine = 0.0;
   for (int i = 0; i < n; i++) {
     if (!take[i] && !memo.has(i)) continue;
     sd_vans_account *books = account(i);
     books->past = books->shear;
     books->shear = shear[i];
     books->foreseen = foreseen[i];
+    mine += due(i, T, ratio);
   }
+  MPI_Allreduce(&mine, &handed, 1, MPI_DOUBLE, MPI_SUM, world);
 }
 
 /* time: since the last call */

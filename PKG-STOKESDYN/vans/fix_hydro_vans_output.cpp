@@ -197,6 +197,7 @@ void FixHydroVans::write_state(NamedState &state)
 {
   state.put("columns", layout(set));
   state.put("last_step", (double) last_step);
+  state.put("handed", handed);
   if (variables_known) state.put("variables", {set.law.g[0], set.law.g[1], set.law.g[2], set.law.flux});
   stream.save(state);
 }
@@ -215,6 +216,7 @@ void FixHydroVans::read_state(const NamedState &state)
 {
   stream.load(state);
   last_step = (bigint) state.get("last_step", -1.0);
+  handed = state.get("handed", HUGE_VAL);
   take_variables(state.get("variables"));
   if (state.get("columns") != layout(set))
     set.voice.warn("the restart file was written with other keywords (conserve, overlap, "

@@ -269,6 +269,7 @@ void VansStream::exchange(double T, double dt, bool held, std::vector<double> &r
 double VansStream::give_back(double area, double T, const Given &given, std::vector<double> &source)
 {
   std::vector<double> back = given.back;
+  sd_vans_share_out(&wet, phi(), given.lost, back.data());
   source.resize(ncell());
   return sd_vans_give_back(&wet, ncell(), fluid.rho * area, T, back.data(), outstanding.data(), source.data());
 }

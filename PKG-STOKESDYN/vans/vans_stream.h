@@ -82,6 +82,8 @@ class VansStream {
     /* [N] what the drag foreseen then was more than the true one; empty: momentum is not accounted
      * for */
     std::vector<double> back;
+    /* what the last solve had for grains that have gone since */
+    double lost = 0.0;
     /* what the grains got from the water; spheres outside the group of it */
     double all = 0.0, others = 0.0;
     /* the water moves on alone, past grains that are held: what it gives them now counts as given

@@ -14,6 +14,13 @@ static void fold_above(int M, int all, double *momentum)
   }
 }
 
+void sd_vans_share_out(const sd_vans_mesh *mesh, const double *phi, double momentum, double *back)
+{
+  const double volume = sd_vans_volume(mesh, phi);
+  for (int n = 0; n < mesh->ncell - 1; n++)
+    back[n] += momentum / volume * (1.0 - phi[n]) * sd_vans_height(mesh, n);
+}
+
 double sd_vans_give_back(const sd_vans_mesh *mesh, int all, double rho_area, double T, double *back,
                          double *outstanding, double *source)
 {

@@ -51,6 +51,17 @@ static inline double sd_vans_account_held(const sd_vans_account *account, double
   return account->foreseen - ratio * T * drag;
 }
 
+/* On its way to the grain when an interval begins: of a solve over the time T, and of the viscous force before it
+ * what still acts then. half: half a step, in time of the water; 0 if the grain is held. Nobody settles that with
+ * grains that are deleted: what all had less what those have that are left goes back to the water. */
+static inline double sd_vans_account_due(const sd_vans_account *account, double T, double half)
+{
+  return account->foreseen + T * account->shear + half * account->past;
+}
+
+/* Adds it to back, evenly over the water between grains, as nobody knows where they were. phi [N] */
+void sd_vans_share_out(const sd_vans_mesh *mesh, const double *phi, double momentum, double *back);
+
 /* A tenth of what is outstanding goes back at a time: the differences of single couplings are
  * mostly noise, which would shake the water of a dense bed.
  *   all          slices of the grains, N or more; what is above the surface goes to the slice below it

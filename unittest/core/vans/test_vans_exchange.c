@@ -112,6 +112,21 @@ static void momentum_goes_back_in_tenths(void **state)
   for (int n = 4; n < ALL; n++) assert_true(outstanding[n] == 0.0);
 }
 
+/* All water gets the same velocity of it, between grains too. */
+static void momentum_of_nobody_is_shared_out_evenly(void **state)
+{
+  (void) state;
+  enum { N = 5 };
+  const double edge[N + 1] = {0, 0.1, 0.3, 0.6, 1.0, 1.5}, phi[N] = {0.6, 0.4, 0.1, 0.0, 0.0};
+  const sd_vans_mesh mesh = {N, 0, 0, edge};
+  double back[N] = {0.0}, sum = 0.0;
+  sd_vans_share_out(&mesh, phi, -3.0, back);
+  for (int n = 0; n < N; n++) sum += back[n];
+  for (int n = 0; n < N - 1; n++)
+    assert_true(fabs(back[n] / ((1 - phi[n]) * (edge[n + 1] - edge[n])) - back[3] / 0.4) < 1e-13);
+  assert_true(fabs(sum + 3.0) < 1e-14 && back[N - 1] == 0.0);
+}
+
 /* What b (U - v) has too much at the start of a solve goes out of the books in the slices that have water. */
 static void what_no_grain_gets_goes_out_of_the_books(void **state)
 {
@@ -147,6 +162,7 @@ int main(void)
       cmocka_unit_test(rate_of_drag_is_that_of_its_grains),
       cmocka_unit_test(exchange_by_law_takes_the_drag_as_it_is),
       cmocka_unit_test(momentum_goes_back_in_tenths),
+      cmocka_unit_test(momentum_of_nobody_is_shared_out_evenly),
       cmocka_unit_test(what_no_grain_gets_goes_out_of_the_books),
       cmocka_unit_test(a_held_grain_is_one_whose_drag_stays),
   };
