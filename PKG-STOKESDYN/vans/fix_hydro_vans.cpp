@@ -152,15 +152,20 @@ void FixHydroVans::check_others() const
   }
 }
 
+double FixHydroVans::phi_at_surface()
+{
+  return stream.phi()[stream.wet.ncell - 2];
+}
+
 /* A bed up to the surface, or a mesh that misses most of the grains, is a mistake in the mesh and
  * not a state of the run. */
 void FixHydroVans::check_mesh()
 {
   const Voice what = set.voice.of("keyword mesh");
-  const int N = stream.ncell(), top = stream.wet.ncell - 2;
+  const int N = stream.ncell();
   const double z_ref = set.mesh.z_ref;
-  if (stream.phi()[top] > 0.5 * set.fluid.phi_max)
-    what.fail("the bed reaches the surface of the water: phi = " + text(stream.phi()[top]) +
+  if (phi_at_surface() > 0.5 * set.fluid.phi_max)
+    what.fail("the bed reaches the surface of the water: phi = " + text(phi_at_surface()) +
               " in the slice below z = " + text(stream.surface()) +
               "; the mesh must be high enough for the bed and the water above it");
   select(average_bit);
@@ -336,6 +341,10 @@ void FixHydroVans::end_of_step()
   else if (set.overlap_once) count_overlaps();
   tell_stiff();
   if (set.couple == VansSettings::ONE) stream.profile_changed();
+  if (set.couple == VansSettings::TWO && phi_at_surface() > 0.5 * set.fluid.phi_max)
+    stream.told.warn(VansTold::FULL, "keyword mesh: since step " + std::to_string(update->ntimestep) +
+                                         " the bed reaches the surface of the water at z = " + text(stream.surface()) +
+                                         ", so that no stream is above it: give the mesh more slices");
   if (set.solves() && set.period > 0.0)
     couple(set.period, set.dt);
   else if (set.solves())

@@ -102,6 +102,7 @@ class FixHydroVans : public RowsFix {
   void look_at_neighbours();
   void look_at_gravity() const;
   void tell_fall();
+  double phi_at_surface();
   void check_mesh();
   void tell_steps();
   void tell_roughness();

@@ -2,6 +2,7 @@
 
 #include "fix_hydro_vans.h"
 
+#include "domain.h"
 #include "pair.h"
 
 #include <cstdio>
@@ -34,6 +35,11 @@ static bool drags_each(const Guest &guest, std::string &says)
     return false;
   says = std::to_string(flags[1]);
   return flags[1] == 1;
+}
+
+static bool has_no_ends(const Guest &guest, std::string & /*says*/)
+{
+  return guest.lmp->domain->zperiodic;
 }
 
 const std::vector<Neighbour> &vans_neighbours()
@@ -76,6 +82,9 @@ const std::vector<Neighbour> &vans_neighbours()
       {N::COMMAND, "timestep", 0, N::ERROR,
        "is {}, and neither drag nor the friction of the water have a way back: use a positive one", runs_back,
        N::ANYWHERE},
+      {N::COMMAND, "boundary", DRAGS, N::WARNING,
+       "is periodic along z: a grain that leaves the box through its top comes back at its bottom, and touches what is "
+       "there; the stream has a bottom and a top: use p p f", has_no_ends},
   };
   return table;
 }

@@ -10,7 +10,7 @@ class VansTold {
  public:
   enum What {
     FAR_APART, CUT_OFF, HIGH_BOTTOM, OUTSIDE, WORK, STIFF, WAVES, FALL, ROUGHNESS, SMOOTH, OVERLAP,
-    WEIGHT
+    WEIGHT, FULL
   };
   explicit VansTold(const Voice &voice) : voice(voice) {}
 

@@ -176,7 +176,8 @@ def test_every_row_has_a_case(tmp_path):
         ("PAIR lubricate lubricate/poly", "DRAGS", "WARNING"),
         ("FIX nvt* npt* nvk temp/* rigid/nvt* rigid/npt* bocs hmc momentum* viscosity thermal/conductivity heat ehex",
          "DRAGS", "WARNING"), ("FIX damping/cundall", "DRAGS", "WARNING"), ("FIX srd", "DRAGS", "WARNING"),
-        ("COMMAND neigh_modify", "DRAGS", "ERROR"), ("COMMAND timestep", "0", "ERROR")]
+        ("COMMAND neigh_modify", "DRAGS", "ERROR"), ("COMMAND timestep", "0", "ERROR"),
+        ("COMMAND boundary", "DRAGS", "WARNING")]
 
 
 def test_particles_at_rest_may_lose_their_own_kind(tmp_path):

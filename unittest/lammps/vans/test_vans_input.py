@@ -174,6 +174,32 @@ def test_bed_up_to_the_surface():
         s.do(line(), "run 0")
 
 
+@pytest.mark.parametrize("z, boundary, full, periodic", [("0.009", "p p f", 1, 0), ("0.004", "p p p", 0, 1)])
+def test_a_bed_that_rises_to_the_surface_and_a_box_without_ends_are_told(tmp_path, z, boundary, full, periodic):
+    """Once each; a bed that is there when a run begins is an error."""
+    text = run_lmp(tmp_path, f"""plugin load stokesdynplugin.so
+units si
+atom_style sphere
+boundary {boundary}
+region box block 0 0.0062 0 0.0062 -0.02 0.15 units box
+create_box 1 box
+create_atoms 1 single 0.003 0.003 0.0035 units box
+create_atoms 1 single 0.003 0.003 0.0095 units box
+set group all diameter 0.006 density 2500
+pair_style zero 0.01
+pair_coeff * *
+{line()}
+timestep 1e-5
+run 1
+displace_atoms all move 0 0 {z} units box
+run 2
+run 2
+""").stdout
+    text = " ".join(text.split())
+    assert text.count("since step 2 the bed reaches the surface of the water at z = 0.019") == full, text
+    assert text.count("boundary is periodic along z: a grain that leaves") == periodic, text
+
+
 def test_mesh_that_misses_the_grains():
     s = Scene()
     s.spheres([[0.01, 0.01, 0.0055], [0.01, 0.01, 0.0855], [0.01, 0.01, 0.0955]], np.zeros((3, 3)), 0.001)
