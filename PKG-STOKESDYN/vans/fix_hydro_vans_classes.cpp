@@ -74,16 +74,21 @@ void FixHydroVans::find_bins(int n, int bit)
   stream.set_classes(radius, limit, volume);
 }
 
-/* One class for each radius, or bins. */
+/* One class for each radius, or bins. Classes of radii stay where they are when the grains of one have gone, and so
+ * do the columns of outputs. */
 void FixHydroVans::find_classes()
 {
+  const auto is_class = [this](double a) {
+    const auto &known = stream.class_radii;
+    return std::find(known.begin(), known.end(), a) != known.end();
+  };
   if (set.has_grains() && set.class_radii.empty() && (set.classes || set.wants_pores())) {
     const int found = group->find(set.average.c_str()),
               bit = found < 0 ? 1 : group->bitmask[found];
     const std::vector<double> radii = set.bins ? std::vector<double>() : different_radii(bit);
     if (set.bins || radii.size() > MAX_CLASSES)
       find_bins(set.bins ? set.bins : (int) MAX_CLASSES, bit);
-    else if (!radii.empty())
+    else if (!radii.empty() && (stream.bins() || !std::all_of(radii.begin(), radii.end(), is_class)))
       stream.set_classes(radii);
   }
   size_array_cols = ARRAY_COLUMNS + (set.upflow ? 2 : 0);

@@ -223,3 +223,15 @@ run 0
     before, after = done.stdout.split("FILLED", 1)
     assert "keyword classes: the run begins without grains to average" in before
     assert "without grains to average" not in after and ("3 bins" in after) == (classes == "3")
+
+
+def test_classes_stay_in_their_columns_when_grains_go():
+    """The lowest ID of a size, then all of that size; a run that begins has the classes of the last one."""
+    s = Scene()
+    s.spheres([[0.004 * k + 0.002, 0.01, 0.01] for k in range(4)], np.zeros((4, 3)), [0.001, 0.0008, 0.001, 0.0008])
+    s.do("fix h all hydro/vans 1 mesh 41 0.001 0 fluid 1000 0.001 gravity 0.5 0 -9.8 couple one classes yes")
+    for gone in ("", "1", "3"):
+        s.do(*[f"group gone id {gone}", "delete_atoms group gone compress no"] * bool(gone), "run 1")
+        radii = [s.lmp.extract_fix("h", 0, 1, 27 + 3 * c) for c in range(2)]
+        assert radii == [0.001, 0.0008]
+    s.close()
