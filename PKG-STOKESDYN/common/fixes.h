@@ -28,20 +28,20 @@ inline std::string plain_style(const std::string &style)
   return style;
 }
 
-/* The first whose style this pattern matches (utils::strmatch), nullptr: there is none; and all of them */
-inline LAMMPS_NS::Fix *fix_like(LAMMPS_NS::LAMMPS *lmp, const std::string &pattern)
-{
-  for (int i = 0; i < lmp->modify->nfix; i++)
-    if (LAMMPS_NS::utils::strmatch(lmp->modify->fix[i]->style, pattern)) return lmp->modify->fix[i];
-  return nullptr;
-}
-
+/* All whose style this pattern matches (utils::strmatch), in the order of the input */
 inline std::vector<LAMMPS_NS::Fix *> fixes_like(LAMMPS_NS::LAMMPS *lmp, const std::string &pattern)
 {
   std::vector<LAMMPS_NS::Fix *> found;
   for (int i = 0; i < lmp->modify->nfix; i++)
     if (LAMMPS_NS::utils::strmatch(lmp->modify->fix[i]->style, pattern)) found.push_back(lmp->modify->fix[i]);
   return found;
+}
+
+/* The first of them, nullptr: there is none */
+inline LAMMPS_NS::Fix *fix_like(LAMMPS_NS::LAMMPS *lmp, const std::string &pattern)
+{
+  const auto found = fixes_like(lmp, pattern);
+  return found.empty() ? nullptr : found.front();
 }
 
 /* All of this plain style, in the order of the input. */
@@ -60,8 +60,8 @@ template <class Style> std::vector<Style *> fixes_of(LAMMPS_NS::LAMMPS *lmp)
   return found;
 }
 
-/* Those that move each atom of their group by the force on it: all that integrate in time, but fix move, rigid bodies
- * and what keeps walls at rest. */
+/* Those that move each atom of their group by the force on it: all that integrate in time, but fix move,
+ * rigid bodies and what keeps walls at rest. */
 inline std::vector<LAMMPS_NS::Fix *> integrators_of(LAMMPS_NS::LAMMPS *lmp)
 {
   std::vector<LAMMPS_NS::Fix *> found;

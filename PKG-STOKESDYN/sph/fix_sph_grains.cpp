@@ -3,13 +3,11 @@
 
 #include "fixes.h"
 #include "keywords.h"
-#include "neighbours.h"
 #include "pair_sph_artvisc_tenscorr.h"
 #include "ranks.h"
 
 #include "atom.h"
 #include "domain.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -119,9 +117,8 @@ void FixSphGrains::init()
 void FixSphGrains::find_held()
 {
   free_bits = groups_of(integrators_of(lmp));
-  held_bits = body_bits = 0;
-  for (int k = 0; k < modify->nfix; k++)
-    if (fits("rigid*", modify->fix[k]->style)) body_bits |= modify->fix[k]->groupbit;
+  body_bits = groups_of(fixes_like(lmp, "^rigid"));
+  held_bits = 0;
   for (const char *style : {"freeze", "setforce", "move"})
     held_bits |= groups_of(fixes_of(lmp, style));
 }

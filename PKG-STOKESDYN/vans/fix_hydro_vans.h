@@ -109,6 +109,7 @@ class FixHydroVans : public RowsFix {
   void tell_smooth();
   void tell_overlap();
   void tell_weight();
+  std::vector<double> masses_that_move() const;
   void tell_stiff();
   void tell_sizes();
   void tell_waves();

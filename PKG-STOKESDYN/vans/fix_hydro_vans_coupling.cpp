@@ -221,6 +221,7 @@ void FixHydroVans::solve_on_demand(double T, double dt)
   VansStream::Given given;
   given.held = true;
   stream.solve(area(), T, dt, given);
+  stream.rest();
 }
 
 /* To each grain what the solve took from the water for it. */

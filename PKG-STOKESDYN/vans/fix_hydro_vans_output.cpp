@@ -2,7 +2,6 @@
 
 #include "vans_files.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -139,7 +138,7 @@ int FixHydroVans::modify_param(int narg, char **arg)
   in.positional(key);
   if (key == "profile") {
     modify_profile(in, what);
-    std::fill(stream.rate.begin(), stream.rate.end(), 0.0);
+    stream.rest();
     stream.profile_changed();
     last_step = -1;
   } else if (key == "given") {

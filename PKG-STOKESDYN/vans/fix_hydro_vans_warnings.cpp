@@ -1,6 +1,7 @@
 /* Of fix hydro/vans: what a run may not do as one thinks, said once. */
 #include "fix_hydro_vans.h"
 
+#include "fixes.h"
 #include "gravity.h"
 #include "neighbours_vans.h"
 #include "sd_sphere.h"
@@ -192,6 +193,20 @@ void FixHydroVans::tell_sizes()
                    "factor of two: use classes yes, or rules consistent");
 }
 
+/* Of each atom; HUGE_VAL where its own mass does not say how it moves: of held grains, and of light ones in bodies */
+std::vector<double> FixHydroVans::masses_that_move() const
+{
+  std::vector<double> mass(atom->nlocal + 1);
+  const int free_bits = groups_of(integrators_of(lmp)), rigid_bits = groups_of(fixes_like(lmp, "^rigid"));
+  for (int i = 0; i < atom->nlocal; i++) {
+    mass[i] = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+    const double added = set.law.added_mass * set.law.rho * sd_sphere_volume(atom->radius[i]);
+    const bool in_body = atom->mask[i] & rigid_bits, free = !in_body && (atom->mask[i] & free_bits);
+    if (!free && !(in_body && mass[i] > added)) mass[i] = HUGE_VAL;
+  }
+  return mass;
+}
+
 /* Drag acts with the velocity of the step before, added mass with its acceleration: beyond 2/rate a
  * step overshoots and grows. Looked at when a run begins and then every 100 steps at most. */
 void FixHydroVans::tell_stiff()
@@ -200,9 +215,7 @@ void FixHydroVans::tell_stiff()
   if (looked_step >= 0 && update->ntimestep < looked_step + 100) return;
   looked_step = update->ntimestep;
   select(groupbit);
-  std::vector<double> mass(atom->nlocal + 1);
-  for (int i = 0; i < atom->nlocal; i++)
-    mass[i] = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+  const std::vector<double> mass = masses_that_move();
   const sd_vans_grains all = grains();
   const sd_vans_ambient ambient = stream.ambient();
   int stiffest = -1;

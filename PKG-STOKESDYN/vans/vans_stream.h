@@ -71,6 +71,8 @@ class VansStream {
   const double *bins() const { return class_limits.empty() ? nullptr : class_limits.data(); }
   /* Columns as read_given has them, or none. */
   void take_given(const std::vector<std::vector<double>> &columns);
+  /* From now on the water keeps its velocities. */
+  void rest() { rate.assign(rate.size(), 0.0); }
   /* U or phi set from outside: hindrance, eddy viscosity and stress follow. */
   void profile_changed();
 

@@ -51,9 +51,10 @@ static inline double sd_vans_account_held(const sd_vans_account *account, double
   return account->foreseen - ratio * T * drag;
 }
 
-/* On its way to the grain when an interval begins: of a solve over the time T, and of the viscous force before it
- * what still acts then. half: half a step, in time of the water; 0 if the grain is held. Nobody settles that with
- * grains that are deleted: what all had less what those have that are left goes back to the water. */
+/* On its way to the grain when an interval begins: of a solve over the time T, and of the viscous force
+ * before it what still acts then. half: half a step, in time of the water; 0 if the grain is held. Nobody
+ * settles that with grains that are deleted: what all had less what those have that are left goes back to the
+ * water. */
 static inline double sd_vans_account_due(const sd_vans_account *account, double T, double half)
 {
   return account->foreseen + T * account->shear + half * account->past;

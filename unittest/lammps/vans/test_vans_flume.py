@@ -110,8 +110,15 @@ run 1
     light = script.replace("stream rest", "stream rest added_mass 0.5")     # of 600 kg/m3 of water: leaves 3/4 of it
     assert f"take at most {2050 / 2650 * limit:.6g}" in run_lmp(tmp_path, light.format(1.2e-5)).stdout
     none = light.replace("density 2650", "density 590")
-    assert "keyword added_mass: atom 1 is not heavier than 0.5 times the water" in run_lmp(
-        tmp_path, none.format(1e-9)).stdout
+    too_light = "keyword added_mass: atom 1 is not heavier than 0.5 times the water"
+    assert too_light in run_lmp(tmp_path, none.format(1e-9)).stdout
+    rigid = ("create_atoms 1 single 0.05 0.05 0.001\nset atom 2 diameter 0.001 density 5000\nset group all mol 1\n"
+             "fix m all rigid/small molecule\n")
+    for fine in ("", rigid):
+        lines = none.replace("atom_style sphere", "atom_style hybrid sphere bond").replace(
+            "fix m all nve/sphere\n", f"mass 1 1\nthermo_style custom step\n{fine}")
+        said = run_lmp(tmp_path, lines.format(1e-9)).stdout
+        assert "Loop time" in said and "keyword added_mass" not in said
 
 
 def test_spheres_of_sand_fall_as_measured():
@@ -141,6 +148,19 @@ def test_added_mass_is_carried_along():
          "fix g all gravity 9.81 vector 0 0 -1", "fix m all nve/sphere", "run 100")
     assert abs(s.atoms("v")[0, 2] / (-(1200 - 1000) / (1200 + 500) * 9.81 * 1e-3) - 1) < 2e-3
     s.close()
+
+
+def test_water_that_has_moved_on_alone_rests_until_it_does_so_again():
+    """No acceleration of a solve that a user asked for pushes grains in all steps after it."""
+    forces = []
+    for added in ("", "added_mass 0.5"):
+        s = Scene()
+        s.spheres([[0.01, 0.01, 0.05]], np.zeros((1, 3)), 0.003, 2650)
+        s.do(f"fix h all hydro/vans 1 mesh 101 0.001 0 fluid 1000 1e-6 gravity 2 0 -9.8 turbulence none area 1 couple "
+             f"none {added}", "fix_modify h solve 0.5 0.001", "run 1")
+        forces.append(s.atoms("f"))
+        s.close()
+    assert forces[0][0, 0] > 0 and np.array_equal(*forces)
 
 
 @pytest.mark.parametrize("density", [1000, 2650])
