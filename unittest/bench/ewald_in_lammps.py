@@ -48,7 +48,8 @@ for k in iterations + [0]:
         times.append(clock() - begin)
     best.append(min(times))
 if lmp.extract_setting("world_rank") == 0:
-    print(*best, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6)
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
+    print("\\n" + " ".join(map(str, best + [memory])), flush=True)    # in one piece: halves write to one pipe
 lmp.close()
 lmp.finalize()
 """
