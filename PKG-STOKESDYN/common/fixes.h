@@ -60,18 +60,23 @@ template <class Style> std::vector<Style *> fixes_of(LAMMPS_NS::LAMMPS *lmp)
   return found;
 }
 
-/* Those that move each atom of their group by the force on it: all that integrate in time, but fix move,
- * rigid bodies and what keeps walls at rest. */
-inline std::vector<LAMMPS_NS::Fix *> integrators_of(LAMMPS_NS::LAMMPS *lmp)
+/* Those that move atoms: all that integrate in time, but for atoms at rest */
+inline std::vector<LAMMPS_NS::Fix *> movers_of(LAMMPS_NS::LAMMPS *lmp)
 {
   std::vector<LAMMPS_NS::Fix *> found;
   for (int i = 0; i < lmp->modify->nfix; i++) {
     LAMMPS_NS::Fix *fix = lmp->modify->fix[i];
-    const std::string style = fix->style;
-    if (fix->time_integrate && style != "move" && style.find("rigid") == std::string::npos &&
-        style.find("stationary") == std::string::npos)
-      found.push_back(fix);
+    if (fix->time_integrate && !strstr(fix->style, "stationary")) found.push_back(fix);
   }
+  return found;
+}
+
+/* Of these, those that move each atom by the force on it: all but fix move and rigid bodies */
+inline std::vector<LAMMPS_NS::Fix *> integrators_of(LAMMPS_NS::LAMMPS *lmp)
+{
+  std::vector<LAMMPS_NS::Fix *> found;
+  for (auto *fix : movers_of(lmp))
+    if (strcmp(fix->style, "move") != 0 && !strstr(fix->style, "rigid")) found.push_back(fix);
   return found;
 }
 

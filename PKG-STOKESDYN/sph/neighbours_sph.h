@@ -19,7 +19,7 @@ enum SphFact : unsigned {
  * grains of fix sph/grains. */
 enum SphSort : unsigned { WATER = 1 << 0, WALL = 1 << 1, GRAIN = 1 << 2 };
 
-const std::vector<Neighbour> &sph_neighbours();
+extern const std::vector<Neighbour> sph_neighbours;
 
 }    // namespace StokesDyn
 #endif

@@ -84,7 +84,7 @@ void PairSph::setup()
 {
   begun = true;
   roles.check_layers();
-  neighbourhood.look(voice, sph_neighbours(), (roles.continuity ? CONTINUITY : 0u) | (roles.grains ? GRAINS : 0u) |
+  neighbourhood.look(voice, sph_neighbours, (roles.continuity ? CONTINUITY : 0u) | (roles.grains ? GRAINS : 0u) |
                     (fixes_of(lmp, FixSphTension::STYLE).empty() ? 0u : TENSION), [this](int i) {
     if (!used(atom->type[i]))
       return roles.grains && (atom->mask[i] & roles.grains->groupbit) ? (unsigned) GRAIN : 0u;

@@ -4,11 +4,9 @@
 
 #include "atom.h"
 #include "force.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 
@@ -31,16 +29,6 @@ namespace Sph {
   {
     Pair *found = voice.lmp->force->pair ? voice.lmp->force->pair_match(PAIR_STYLE, 1) : nullptr;
     if (!found) voice.fail("there is no pair_style " + std::string(PAIR_STYLE));
-    return found;
-  }
-
-  std::vector<Fix *> movers(LAMMPS *lmp)
-  {
-    std::vector<Fix *> found;
-    for (int i = 0; i < lmp->modify->nfix; i++) {
-      Fix *fix = lmp->modify->fix[i];
-      if (fix->time_integrate && !strstr(fix->style, "stationary")) found.push_back(fix);
-    }
     return found;
   }
 

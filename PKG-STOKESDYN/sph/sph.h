@@ -44,9 +44,6 @@ namespace Sph {
   /* The pair style of the scene, a PairSph; fails without one. */
   LAMMPS_NS::Pair *require_pair(const Voice &voice);
 
-  /* Those that move particles: all that integrate in time, but for particles at rest */
-  std::vector<LAMMPS_NS::Fix *> movers(LAMMPS_NS::LAMMPS *lmp);
-
   double mass(LAMMPS_NS::LAMMPS *lmp, int i);
 
   /* [3 n] the rows of an array of LAMMPS, which are one piece of memory; nullptr: there are none */

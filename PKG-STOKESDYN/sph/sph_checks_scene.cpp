@@ -9,12 +9,10 @@
 
 #include "atom.h"
 #include "domain.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <tuple>
 
 using namespace LAMMPS_NS;
@@ -206,10 +204,8 @@ void SphChecks::tell_of_belts()
 void SphChecks::look_at_bodies()
 {
   if (rows.model.dimension != domain->dimension) return;
-  for (int k = 0; k < lmp->modify->nfix; k++) {
-    Fix *fix = lmp->modify->fix[k];
+  for (Fix *fix : fixes_like(lmp, "^rigid")) {
     int dim;
-    if (strncmp(fix->style, "rigid", 5) != 0) continue;
     const auto *body = (const int *) fix->extract("body", dim);
     const auto *mass = (const double *) fix->extract("masstotal", dim);
     if (body && mass) look_at_bodies_of(fix, body, mass);

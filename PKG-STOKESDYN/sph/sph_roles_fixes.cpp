@@ -99,7 +99,7 @@ void SphRoles::find_integrators()
   leapfrog_bits = groups_of(moving) | groups_of(stationary);
   own_vest_bits = groups_of(moving) | groups_of(theirs);
   rest_bits = groups_of(stationary) | groups_of(their_stationary);
-  displaced_bits = groups_of(Sph::movers(lmp));
+  displaced_bits = groups_of(movers_of(lmp));
 }
 
 bool SphRoles::rests_alone(int i) const
@@ -146,7 +146,7 @@ void SphRoles::check_groups()
     pressure_bits |= fix->groupbit;
   }
   int moved = 0;
-  for (const auto *fix : Sph::movers(lmp)) {
+  for (const auto *fix : movers_of(lmp)) {
     if (const tagint both = in_both(moved, fix->groupbit))
       voice.fail("atom " + std::to_string(both) + " is integrated twice, by " + name_of(fix) + " and by another "
                  "fix: it would go twice as far in a step; take one of the two out");

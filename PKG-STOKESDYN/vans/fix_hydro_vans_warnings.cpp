@@ -22,7 +22,7 @@ void FixHydroVans::look_at_neighbours()
 {
   const unsigned facts =
       (set.fluctuations.kind == VansSettings::Fluctuations::LANGEVIN ? LANGEVIN : 0u) | (set.has_grains() ? DRAGS : 0u);
-  neighbourhood.look(set.voice, vans_neighbours(), facts,
+  neighbourhood.look(set.voice, vans_neighbours, facts,
                      [this](int i) { return (unsigned) ((atom->mask[i] & groupbit) != 0); }, this);
 }
 

@@ -14,7 +14,7 @@ enum VansFact : unsigned {
   DRAGS = 1 << 1,       // the water drags grains
 };
 
-const std::vector<Neighbour> &vans_neighbours();
+extern const std::vector<Neighbour> vans_neighbours;
 
 }    // namespace StokesDyn
 #endif
