@@ -224,11 +224,12 @@ void FixHydroVans::solve_on_demand(double T, double dt)
   stream.rest();
 }
 
-/* To each grain what the solve took from the water for it. */
+/* To each grain what the solve took from the water for it: to those of the averages alone, since the solve knew of
+ * no others. Of these all that they feel goes back to the water. */
 void FixHydroVans::hand_over(double T, double ratio)
 {
   const int n = atom->nlocal;
-  select(average_bit | groupbit);
+  select(average_bit);
   const sd_vans_grains all = grains();
   std::vector<double> shear(n + 1), foreseen(n + 1);
   sd_vans_gather(&set.mesh, set.point, &all, stream.shear_density.data(), shear.data());
