@@ -120,6 +120,7 @@ void FixHydroVans::init()
   if (set.couple == VansSettings::TWO) tell_sizes();
   tell_roughness();
   tell_smooth();
+  tell_lid();
   check_others();
   look_at_neighbours();
   tell_fall();

@@ -107,6 +107,7 @@ class FixHydroVans : public RowsFix {
   void tell_steps();
   void tell_roughness();
   void tell_smooth();
+  void tell_lid();
   void tell_overlap();
   void tell_weight();
   std::vector<double> masses_that_move() const;

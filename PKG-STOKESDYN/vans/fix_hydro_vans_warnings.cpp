@@ -125,7 +125,8 @@ void FixHydroVans::tell_smooth()
   static const std::map<sd_vans_turbulence, const char *> NAMES = {{SD_VANS_KZ, "kz"},
                                                                    {SD_VANS_PARABOLIC, "parabolic"},
                                                                    {SD_VANS_LI_SAWAMOTO, "li_sawamoto"},
-                                                                   {SD_VANS_NI_CAPART, "ni_capart"}};
+                                                                   {SD_VANS_NI_CAPART, "ni_capart"},
+                                                                   {SD_VANS_PIPE, "pipe"}};
   const auto law = NAMES.find(set.fluid.turbulence);
   if (stream.told.has(VansTold::SMOOTH) || !set.solves() || set.fluid.sublayer || set.yade() || law == NAMES.end())
     return;
@@ -137,7 +138,22 @@ void FixHydroVans::tell_smooth()
   if (all > 0) return;
   stream.told.warn(VansTold::SMOOTH, std::string("keyword turbulence: there are no grains, and with ") + law->second +
                                          " a smooth bottom rubs as if it had grains of 75 nu/u_star: use sublayer "
-                                         "yes, or turbulence rousseau");
+                                         "yes" + (law->first == SD_VANS_PIPE ? "" : ", or turbulence rousseau"));
+}
+
+/* A surface of given velocity is a wall to the law pipe alone. To the others eddies are longest there. */
+void FixHydroVans::tell_lid()
+{
+  const sd_vans_fluid &fluid = set.fluid;
+  if (!fluid.driven || !set.solves() || set.yade() || fluid.turbulence == SD_VANS_LAMINAR) return;
+  if (fluid.sublayer && stream.drive == 0.0 && !set.dpdx.is_variable() && !set.gravity[0].is_variable())
+    stream.told.warn(VansTold::LID,
+                     "keyword sublayer: its u_star is that of gravity and pressure gradient along x, and with surface "
+                     "speed alone both are 0: there are no eddies at any height; leave sublayer out");
+  else if (fluid.turbulence != SD_VANS_PIPE && !set.u_top.is_variable() && set.u_top.number() == 0.0)
+    stream.told.warn(VansTold::LID,
+                     "keyword surface: speed 0 is a lid at rest, and for all laws of turbulence but pipe eddies are "
+                     "long there, so that it takes most of what drives the stream: use turbulence pipe");
 }
 
 /* Once: by the default a clump whose members overlap has the buoyancy and the drag of all of them */

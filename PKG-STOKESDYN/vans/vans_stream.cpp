@@ -245,6 +245,22 @@ void VansStream::tell_bottom()
                 ", 5 nu/u_star (mesh file NAME has slices of different heights)");
 }
 
+/* The eddy viscosity of a step is that of the velocity before it. Of a mode that dies at the rate r (1 - r dt)/(1 + r
+ * dt) is left, so that it changes its sign in every step where r dt is above 1. Side walls are half of the step before,
+ * and of (1 - 1.5 r dt)/(1 + 0.5 r dt): they grow from r dt = 2 on. */
+void VansStream::tell_swings(double dt)
+{
+  if (told.has(VansTold::SWINGS)) return;
+  double time = 2.0 / sd_vans_wall_rate(&wet, &fluid, U.data());    // infinite without walls
+  if (fluid.turbulence != SD_VANS_LAMINAR)
+    time = std::min(time, wet.edge[wet.ncell - 1] / std::sqrt(std::fabs(largest_stress()) / fluid.rho));
+  if (!(dt > time)) return;
+  told.warn(VansTold::SWINGS,
+            "keyword solve: the step dt = " + text(dt) + " is longer than the time " + text(time) +
+                " in which eddies over the depth, or side walls, take the momentum of the stream: the velocity swings "
+                "from step to step, as both are those of the velocity before; use a dt of at most " + text(0.1 * time));
+}
+
 /* b, and what it has too much at the start as a source. */
 void VansStream::exchange(double T, double dt, bool held, std::vector<double> &rest)
 {
@@ -318,4 +334,5 @@ void VansStream::solve(double area, double T, double dt, const Given &given)
   keep_books(area, T, given, books);
   ledger.transit -= given.all + returned;
   tell_bottom();
+  tell_swings(dt);
 }

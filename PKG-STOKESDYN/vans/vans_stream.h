@@ -132,6 +132,7 @@ class VansStream {
   void keep_books(double area, double T, const Given &given, const sd_vans_books &books);
   void tell_limits(double T, double dt, bool held, const double cut[2]);
   void tell_bottom();
+  void tell_swings(double dt);
   [[noreturn]] void no_average(int n, double area);
   void check_mesh(const NamedState &state) const;
   void load_surface(const NamedState &state);

@@ -10,7 +10,7 @@ class VansTold {
  public:
   enum What {
     FAR_APART, CUT_OFF, HIGH_BOTTOM, OUTSIDE, WORK, STIFF, WAVES, FALL, ROUGHNESS, SMOOTH, OVERLAP,
-    WEIGHT, FULL
+    WEIGHT, FULL, SWINGS, LID
   };
   explicit VansTold(const Voice &voice) : voice(voice) {}
 

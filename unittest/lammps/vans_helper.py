@@ -117,6 +117,18 @@ class Scene:
         self.lmp.close()
 
 
+# A box without grains, for run_lmp
+WATER_ALONE = """
+plugin load stokesdynplugin.so
+units si
+region box block 0 1 0 1 0 1
+create_box 1 box
+mass 1 1
+pair_style zero 0.1
+pair_coeff * *
+"""
+
+
 def run_lmp(directory, script, ranks=1, name="in.test", variables=()):
     """Runs lmp on a script; its output. Fails the test with the end of the output if lmp fails."""
     path = os.path.join(str(directory), name)

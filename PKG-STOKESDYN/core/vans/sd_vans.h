@@ -318,6 +318,10 @@ double sd_vans_bed_elevation(const sd_vans_mesh *mesh, const double *phi);
 double sd_vans_wall_share(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *phi,
                           const double *U, double drive);
 
+/* The largest rate at which side walls take momentum from a slice, 2/width coef f/8 |U|; 0 without walls.
+ * U [N+1] */
+double sd_vans_wall_rate(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U);
+
 /* Depth of the water above the bed over the size of its mean velocity there; 0 at rest. */
 double sd_vans_depth_over_velocity(const sd_vans_mesh *mesh, const double *U, double bed);
 

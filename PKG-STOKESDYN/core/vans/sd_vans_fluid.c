@@ -124,11 +124,13 @@ static double mixing_at_node(const sd_vans_mesh *mesh, const sd_vans_fluid *flui
                              const double *length, int j)
 {
   if (fluid->turbulence == SD_VANS_LAMINAR) return 0.0;
-  /* z u_star/nu below which the law of the wall is linear, u_star of the whole depth */
+  /* z u_star/nu below which the law of the wall is linear, u_star of the whole depth; below a lid of half of it,
+   * from either wall */
   if (fluid->sublayer) {
-    const double nu = fluid->eta / fluid->rho, H = mesh->edge[mesh->ncell - 1];
-    const double drive = fluid->rules == SD_VANS_YADE ? fluid->gx : sd_vans_drive(fluid);
-    if (mesh->edge[j] * sqrt(fabs(drive) * H) / nu < 11.3) return 0.0;
+    const int yade = fluid->rules == SD_VANS_YADE, lid = !yade && fluid->driven && fluid->turbulence == SD_VANS_PIPE;
+    const double nu = fluid->eta / fluid->rho, H = mesh->edge[mesh->ncell - 1], z = mesh->edge[j];
+    const double drive = yade ? fluid->gx : sd_vans_drive(fluid);
+    if ((lid ? fmin(z, H - z) : z) * sqrt(fabs(drive) * (lid ? 0.5 * H : H)) / nu < 11.3) return 0.0;
   }
   return length[j] * length[j] / gap_of(mesh, j);
 }

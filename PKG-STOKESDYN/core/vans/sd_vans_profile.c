@@ -70,6 +70,19 @@ double sd_vans_wall_share(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, 
   return fmin(2.0 * R / fluid->width, 1.0);
 }
 
+/* f |U| grows with |U|. */
+double sd_vans_wall_rate(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, const double *U)
+{
+  const double length = sd_vans_wall_length(fluid);
+  double fastest = 0.0;
+  if (!(fluid->width > 0.0)) return 0.0;
+  for (int j = 1; j < mesh->ncell; j++) fastest = fmax(fastest, fabs(U[j]));
+  const double Re = fmax(fastest * length * fluid->rho / fluid->eta, SD_VANS_LEAST_RE);
+  sd_vans_friction anew = {.roughness = fluid->wall_roughness / length};
+  return fluid->wall_coef * sd_vans_wall_friction(fluid->rules, Re, &anew) * Re * fluid->eta /
+         (4.0 * fluid->rho * length * fluid->width);
+}
+
 /* depth / (flux / depth) */
 double sd_vans_depth_over_velocity(const sd_vans_mesh *mesh, const double *U, double bed)
 {

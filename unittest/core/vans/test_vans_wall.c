@@ -201,6 +201,27 @@ static void narrow_walls_limit_the_mixing_length(void **state)
   column_free(c);
 }
 
+/* Of the fastest slice below the uppermost: laminar 12 nu/width^2 at any speed, turbulent f |U|/(4 width). */
+static void walls_take_momentum_at_a_rate(void **state)
+{
+  (void) state;
+  const double edge[5] = {0, 0.1, 0.2, 0.3, 0.4};
+  const sd_vans_mesh mesh = {.ncell = 4, .edge = edge};
+  sd_vans_fluid fluid = {.rho = 1300.0, .eta = 0.0026, .width = 0.005, .wall_coef = 0.7, .wall_roughness = 2e-4};
+  double U[5] = {9.0, 0.0, -0.01, 0.005, 9.0};
+  const double laminar = 0.7 * 12.0 * 2e-6 / (0.005 * 0.005);
+  assert_true(fabs(sd_vans_wall_rate(&mesh, &fluid, U) / laminar - 1.0) < 1e-12);
+  U[2] = 0.0;
+  U[3] = 0.0;
+  assert_true(fabs(sd_vans_wall_rate(&mesh, &fluid, U) / laminar - 1.0) < 1e-12);
+  U[2] = -1.5;
+  sd_vans_friction anew = {.roughness = 0.08};
+  const double f = sd_vans_wall_friction(SD_VANS_CONSISTENT, 1.5 * 0.0025 / 2e-6, &anew);
+  assert_true(fabs(sd_vans_wall_rate(&mesh, &fluid, U) / (0.7 * f * 1.5 / (4.0 * 0.005)) - 1.0) < 1e-12);
+  fluid.width = 0.0;
+  assert_true(sd_vans_wall_rate(&mesh, &fluid, U) == 0.0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -212,6 +233,7 @@ int main(void)
       cmocka_unit_test(wall_friction_holds_between_two_solutions),
       cmocka_unit_test(yades_wall_friction_is_a_substitution),
       cmocka_unit_test(side_walls_balance_the_slope),
+      cmocka_unit_test(walls_take_momentum_at_a_rate),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

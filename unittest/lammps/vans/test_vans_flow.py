@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 # close_scenes is a fixture
-from vans_helper import Scene, bed_script, close_scenes, run_lmp, write_columns  # noqa: F401
+from vans_helper import WATER_ALONE, Scene, bed_script, close_scenes, run_lmp, write_columns  # noqa: F401
 
 WATER = "fluid 1030 0.0017 gravity 0 0 -9.7"
 
@@ -74,6 +74,37 @@ def test_friction_of_a_smooth_bottom_beside_keulegan(law, over):
     keulegan = 2.5 * np.log(0.02 * star / 1e-6) + 3.25
     assert abs(s.number("discharge") / 0.02 / star / keulegan / over - 1) < 0.01
     s.close()
+
+
+@pytest.mark.parametrize("words, over", [("sublayer yes", 1.08), ("", 0.66)])
+def test_a_smooth_duct_below_a_lid_beside_the_logarithmic_law(words, over):
+    """Of a channel with two walls, U/u_star = ln(H u_star/2 nu)/0.41 + 5.2 - 1/0.41, H u_star/2 nu = 1118. Both walls
+    have their layer: the profile is the same from above."""
+    s = Scene(style="atomic")
+    s.do("fix h all hydro/vans 1 mesh 401 0.00025 0 fluid 1000 0.001 gravity 0 0 -9.8 couple fluid solve 1 0.1 "
+         f"pressure_gradient -10 surface speed 0 turbulence pipe {words}", "run 400")
+    u, star = s.column("u", 401)[:-1], np.sqrt(10 * 0.05 / 1000)
+    s.close()
+    assert np.abs(u - u[::-1]).max() < 1e-9 * u.max()
+    assert u.mean() / star / (np.log(star * 0.05 / 1e-6) / 0.41 + 5.2 - 1 / 0.41) == pytest.approx(over, abs=0.02)
+
+
+def test_a_lid_that_a_law_of_turbulence_does_not_know_is_told(tmp_path):
+    """With kz it takes nine tenths of the drive; with sublayer a stream that its surface alone drives was laminar."""
+    for words, says in (("surface speed 0 turbulence kz", "keyword surface: speed 0 is a lid at rest"),
+                        ("surface speed 0 turbulence pipe", ""), ("surface speed 1 turbulence kz", ""),
+                        ("surface speed 0 turbulence none", ""), ("turbulence kz sublayer yes", ""),
+                        ("surface speed 1 turbulence pipe sublayer yes", ""),
+                        ("surface speed 1 pressure_gradient 0 turbulence pipe sublayer yes", "keyword sublayer: its")):
+        gradient = "" if "gradient" in words or "speed" not in words else "pressure_gradient -10"
+        done = run_lmp(tmp_path, WATER_ALONE + f"""
+fix vans all hydro/vans 1 mesh 401 0.00025 0 fluid 1000 0.001 gravity {0 if "speed" in words else 0.1} 0 -9.81 &
+    couple fluid solve 0.1 0.1 {words} {gradient}
+run 1
+""")
+        assert done.returncode == 0, done.stdout[-2000:]
+        told = [line for line in done.stdout.splitlines() if "keyword surface:" in line or "keyword sublayer:" in line]
+        assert len(told) == bool(says) and all(says in line for line in told)
 
 
 def test_uneven_mesh(tmp_path):

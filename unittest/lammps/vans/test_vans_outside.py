@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 # close_scenes is a fixture
-from vans_helper import Scene, bed_script, close_scenes, run_lmp, write_columns  # noqa: F401
+from vans_helper import WATER_ALONE, Scene, bed_script, close_scenes, run_lmp, write_columns  # noqa: F401
 
 
 def falls(x, d, density, water, drag, box, steps, dt):
@@ -239,6 +239,41 @@ run 0
     assert done.returncode == 0, done.stdout[-2000:]
     assert done.stdout.count("a smooth bottom rubs as if it had grains of 75 nu/u_star") == (law is not None)
     assert law is None or f"keyword turbulence: there are no grains, and with {law} a" in done.stdout
+
+
+@pytest.mark.parametrize("law, dt, swing, told", [("kz", 0.2, 1e-2, False), ("kz", 2, 1e-2, True), ("kz", 1e4, 4, True),
+                                                  ("none", 1e4, 1e-3, False),
+                                                  ("none sidewall 0.0065 1", 2, 1e-3, False),
+                                                  ("none sidewall 0.0065 1", 20, 4, True)])
+def test_steps_of_a_solve_in_which_the_stream_swings_are_told(tmp_path, law, dt, swing, told):
+    """H/u_star is 1.41, and U/gx of side walls alone 3.2. How much the speeds of the surface of two steps differ at
+    most, over their mean: more than a half and less than `swing` where it is large."""
+    done = run_lmp(tmp_path, WATER_ALONE + f"""
+fix vans all hydro/vans 1 mesh 201 0.0005 0 fluid 1000 0.001 gravity 0.05 0 -9.81 couple fluid turbulence {law} &
+    solve {dt} {dt}
+timestep {dt}
+run 100
+print "SPEED $(f_vans[201][2])"
+run 1
+print "SPEED $(f_vans[201][2])"
+""")
+    assert done.returncode == 0, done.stdout[-2000:]
+    one, two = [float(line.split()[1]) for line in done.stdout.splitlines() if line.startswith("SPEED")]
+    part = abs(one - two) / (one + two) * 2
+    assert part < swing and (swing < 1 or part > 0.5)
+    assert done.stdout.count("keyword solve: the step dt = ") == told
+
+
+def test_water_that_turns_about_is_not_told_to_swing(tmp_path):
+    """Where it stands still it is driven most, and side walls take nothing."""
+    done = run_lmp(tmp_path, WATER_ALONE + """
+variable g equal 0.05*cos(PI*time)
+fix vans all hydro/vans 1 mesh 21 0.005 0 fluid 1000 0.001 gravity v_g 0 -9.81 couple fluid turbulence none &
+    sidewall 0.0065 1 solve 0.05 0.05
+timestep 0.05
+run 100
+""")
+    assert done.returncode == 0 and "keyword solve" not in done.stdout, done.stdout[-2000:]
 
 
 @pytest.mark.parametrize("slices, words, told", [
