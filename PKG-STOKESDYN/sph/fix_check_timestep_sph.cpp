@@ -53,9 +53,8 @@ void FixCheckTimestepSph::end_of_step()
     if (!pair->has_sound_speed(type))
       voice.fail_one("type " + std::to_string(type) + " has no speed of sound: pair_coeff " +
                      std::to_string(type) + " " + std::to_string(type) + " c VALUE");
-    const double here = sd_sph_step_limit(pair->smoothing_length(type), pair->sound_speed(type),
-                                          largest[i],
-                                          pair->rubs_implicitly() ? 0.0 : pair->viscosity(i), atom->rho[i]);
+    const double here = sd_sph_step_limit(pair->explicit_friction(), pair->smoothing_length(type),
+                                          pair->sound_speed(type), largest[i], pair->viscosity(i), atom->rho[i]);
     if (here < mine || (here == mine && atom->tag[i] < who)) {
       mine = here;
       who = atom->tag[i];

@@ -140,30 +140,31 @@ void SphChecks::look_at_fluids()
 void SphChecks::look_at_step()
 {
   const bool newton = settings.is_newtonian();
+  const sd_sph_friction form = settings.explicit_friction();
   double sound = HUGE_VAL, friction = HUGE_VAL;
   for (int i = 0; i < atom->nlocal; i++) {
     const int t = atom->type[i];
     if (!settings.used(t) || roles.is_wall(i) || !roles.state_of(i) || !(atom->rho[i] > 0.0)) continue;
     const double h = settings.smoothing_length(t);
     sound = std::min(sound, h / roles.speed_of_sound(i));
-    if (!rows.model.friction || settings.implicit) continue;
+    if (form == SD_SPH_INVISCID) continue;
     const sd_sph_rheology fluid = settings.rheology(t);
     const double most = newton ? fluid.mu : sd_sph_largest_mu(&fluid);
-    friction = std::min(friction, h * h * atom->rho[i] / (8.0 * most));
+    friction = std::min(friction, sd_sph_friction_limit(form, h, most, atom->rho[i]));
   }
   sound = smallest_of_all(world, sound);
   friction = smallest_of_all(world, friction);
-  const std::string dt = text(update->dt);
+  const std::string dt = text(update->dt), share = text(sd_sph_friction_share(form)), most = text(friction);
   if (update->dt > sound)
     voice.warn("the time step " + dt + " is longer than h/c = " + text(sound) +
                ", the time that sound takes over a smoothing length: the water may fly apart; take 0.2 to 0.4 of it");
   if (update->dt > friction && newton)
-    voice.warn("keyword viscosity: the time step " + dt + " is longer than h^2 rho/(8 mu) = " + text(friction) +
-               ": friction is unstable; use a smaller time step, or implicit yes");
+    voice.warn("keyword viscosity: the time step " + dt + " is longer than h^2 rho/(" + share + " mu) = " + most +
+               ": friction may be unstable; use a smaller time step, or implicit yes");
   else if (update->dt > friction)
-    voice.warn("keyword rheology: the time step " + dt + " is longer than h^2 rho/(8 mumax) = " + text(friction) +
-               ": friction is unstable where the fluid is nearly at rest; use a smaller mumax "
-               "(rho c h/3 costs no time step), a smaller time step, or implicit yes");
+    voice.warn("keyword rheology: the time step " + dt + " is longer than h^2 rho/(" + share + " mumax) = " + most +
+               ": friction may be unstable where the fluid is nearly at rest; use a smaller mumax (rho c h/" +
+               (form == SD_SPH_CENTRAL ? "7" : "3") + " costs no time step), a smaller time step, or implicit yes");
 }
 
 /* Wall particles stand for fluid: they push with its mass. */

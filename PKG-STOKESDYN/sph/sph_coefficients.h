@@ -21,7 +21,7 @@ class SphCoefficients {
   bool has_sound_speed(int itype) const;
   bool takes(int itype) const { return table[H][itype][itype] > 0.0; }
   bool is_newtonian() const { return law == SD_SPH_NEWTON; }
-  bool rubs_implicitly() const { return implicit; }
+  sd_sph_friction explicit_friction() const { return implicit ? SD_SPH_INVISCID : model.friction; }
   bool has_laplacian() const { return model.friction == SD_SPH_LAPLACIAN; }
   /* for fix sph/tension: do particles keep apart by shift, without correction? */
   bool finds_surface() const { return shifts && !corrects; }

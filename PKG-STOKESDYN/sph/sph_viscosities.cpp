@@ -49,10 +49,11 @@ double SphViscosities::all_of(int i) const
 }
 
 /* All that acts is in atom->f, on its owners; the lists, places and viscosities are those of the force of this
- * step. */
+ * step. Whoever looked at it since (fix check/timestep/sph) has prepared the rows anew. */
 void SphViscosities::rub_implicitly(double tau, Rows &F)
 {
   const int nlocal = atom->nlocal;
+  rows.particles.mu = viscosities.data();
   inertia.resize(nlocal + 1);
   for (int i = 0; i < nlocal; i++) inertia[i] = Sph::mass(lmp, i);
   for (int i = 0; i < rows.particles.n; i++) rows.x4[4 * (size_t) i + 3] = 0.0;

@@ -70,8 +70,7 @@ static sd_status rub_judge(void *ctx, const sd_cg_state *now, int *done)
 }
 
 /* Those with a given velocity have so large a mu that the harmonic mean is twice the other's. The diagonal of
- * K is about that of the smooth fluid, m 8 mu/(rho h^2), from which sd_sph_step_limit comes; central has (D + 2)/D
- * times as much along each axis. */
+ * K is about that of the smooth fluid, m 8 mu/(rho h^2); central has (D + 2)/D times as much along each axis. */
 static void rub_prepare(rubbing *s)
 {
   const sd_sph_implicit *A = s->A;

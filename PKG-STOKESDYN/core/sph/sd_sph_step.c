@@ -34,12 +34,15 @@ double sd_sph_fastest(int n, const double *v)
   return sqrt(square);
 }
 
-/* Sound and the approach of particles must not cross h in a step; momentum diffuses over h in
- * h^2 rho / mu, of which an eighth is stable. */
-double sd_sph_step_limit(double h, double c, double approach, double mu, double rho)
+double sd_sph_friction_limit(sd_sph_friction form, double h, double mu, double rho)
 {
-  const double courant = h / (c + approach);
-  return mu > 0.0 ? fmin(courant, h * h * rho / (8.0 * mu)) : courant;
+  return form != SD_SPH_INVISCID && mu > 0.0 ? h * h * rho / (sd_sph_friction_share(form) * mu) : HUGE_VAL;
+}
+
+/* Sound and the approach of particles must not cross h in a step. */
+double sd_sph_step_limit(sd_sph_friction form, double h, double c, double approach, double mu, double rho)
+{
+  return fmin(h / (c + approach), sd_sph_friction_limit(form, h, mu, rho));
 }
 
 double sd_sph_growth_limit(const sd_sph_model *model, const sd_sph_parameters *p, double rho)

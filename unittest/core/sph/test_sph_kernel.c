@@ -148,9 +148,10 @@ static void sound_grows_above_what_viscosity_damps(void **state)
 static void time_step_limits(void **state)
 {
   (void) state;
-  CHECK_NEAR(sd_sph_step_limit(0.02, 30.0, 10.0, 0.0, 900.0), 0.02 / 40.0, 1e-18);
-  CHECK_NEAR(sd_sph_step_limit(0.02, 30.0, 10.0, 500.0, 900.0), 0.02 * 0.02 * 900.0 / 4000.0,
-             1e-18);
+  CHECK_NEAR(sd_sph_step_limit(SD_SPH_CENTRAL, 0.02, 30.0, 10.0, 0.0, 900.0), 0.02 / 40.0, 1e-18);
+  CHECK_NEAR(sd_sph_step_limit(SD_SPH_INVISCID, 0.02, 30.0, 10.0, 500.0, 900.0), 0.02 / 40.0, 1e-18);
+  CHECK_NEAR(sd_sph_step_limit(SD_SPH_LAPLACIAN, 0.02, 30.0, 10.0, 500.0, 900.0), 0.02 * 0.02 * 900.0 / 4000.0, 1e-18);
+  CHECK_NEAR(sd_sph_step_limit(SD_SPH_CENTRAL, 0.02, 30.0, 10.0, 500.0, 900.0), 0.02 * 0.02 * 900.0 / 9000.0, 1e-18);
 }
 
 int main(void)

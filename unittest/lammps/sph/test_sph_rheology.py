@@ -262,9 +262,10 @@ def test_what_is_refused(name):
 
 
 def test_a_time_step_that_mumax_does_not_bear_is_warned_of(tmp_path):
-    long = mpirun(1, SCENE.replace("timestep 0.002", "timestep 0.003") + "run 0", tmp_path)
-    assert "the time step 0.003 is longer than h^2 rho/(8 mumax) = 0.00264" in long.stdout
-    assert "mumax" not in mpirun(1, SCENE + "run 0", tmp_path).stdout.replace("rheology herschel_bulkley", "")
+    long, short = [mpirun(1, SCENE.replace("timestep 0.002", f"timestep {dt}") + "run 0", tmp_path).stdout
+                   for dt in (0.0012, 0.0011)]
+    assert "the time step 0.0012 is longer than h^2 rho/(18 mumax) = 0.00117" in long
+    assert "mumax" not in short.replace("rheology herschel_bulkley", "")
 
 
 def test_fix_check_timestep_uses_the_viscosities_of_the_moment():
@@ -280,5 +281,5 @@ def test_fix_check_timestep_uses_the_viscosities_of_the_moment():
             limits.append(lmp.extract_fix("limit", 0, 1, 0))
         finally:
             lmp.close()
-    assert limits[0] == pytest.approx(0.13**2 / (8 * 4), rel=1e-9)
-    assert limits[1] == pytest.approx(0.13**2 / (8 * (0.1 + 0.9 / 2)), rel=1e-6)
+    assert limits[0] == pytest.approx(0.13**2 / (18 * 4), rel=1e-9)
+    assert limits[1] == pytest.approx(0.13**2 / (18 * (0.1 + 0.9 / 2)), rel=1e-6)

@@ -195,10 +195,11 @@ def test_two_fluids_without_their_volume_are_warned_of(tmp_path, rho0, volume, w
 
 @pytest.mark.parametrize("dt, style, says", [
     (0.009, "viscosity 0.001 central", ""), (0.011, "viscosity 0.001 central", "is longer than h/c = 0.01,"),
-    (0.002, "viscosity 0.62 central", ""), (0.0021, "viscosity 0.62 central", "than h^2 rho/(8 mu) = 0.00201613"),
+    (0.002, "viscosity 0.62", ""), (0.0021, "viscosity 0.62", "than h^2 rho/(8 mu) = 0.00201613"),
+    (0.002, "viscosity 0.27 central", ""), (0.0021, "viscosity 0.27 central", "than h^2 rho/(18 mu) = 0.00205761"),
     (0.0021, "viscosity 0.62 central implicit yes", "")])
 def test_a_time_step_that_no_flow_bears_is_warned_of(tmp_path, dt, style, says):
-    """h/c is 0.01, and h^2 rho/8 is 0.00125."""
+    """h/c is 0.01, h^2 rho/8 is 0.00125, and h^2 rho/18 is 0.000556."""
     rest = REST.format(volume="no").replace("timestep 0.002", f"timestep {dt}").replace("run 1", "run 0")
     log = log_of(tmp_path, "variable ratio index 1\n" + FLOOR.replace("viscosity 0.001 central", style) +
                  "fix p all sph/pressure Tait 14.2857 1 7" + rest)
