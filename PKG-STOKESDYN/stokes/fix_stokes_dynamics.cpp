@@ -83,7 +83,7 @@ void FixStokesDynamics::post_force(int /*vflag*/)
   const bool adds = applies();
   for (double &t : total) t = 0.0;
   const Ambient &ambient = hydro.ambient;
-  if (cleared.first_in(hydro.scene.all_epochs().selection))
+  if (cleared.first_in(hydro.epochs.selection))
     for (int i = 0; i < atom->nlocal; i++)
       if (!ambient.active()[i]) rows.erase(i);
   for (int i : ambient.who()) {

@@ -207,7 +207,7 @@ sd_status FixStokesDynamicsField::add_all_pairs(const FlowSources &sources, cons
 sd_status FixStokesDynamicsField::add_split(Hydrodynamics &hydro, const FlowSources &sources, double range,
                                             const sd_field_grid &g, double *u)
 {
-  const sd_world ranks = hydro.scene.ranks();
+  const sd_world ranks = hydro.engine.ranks();
   const Halo halo = near_planes(g, range, sources.x);
   const FlowSources there = {places_near_by(halo, images().h, sources.x), near_by(halo, sources.a, 1),
                              near_by(halo, sources.F, 3), near_by(halo, sources.T, 3), {}};
@@ -220,7 +220,7 @@ void FixStokesDynamicsField::add_flow(Hydrodynamics &hydro, const sd_field_grid 
 {
   const FlowSources sources = hydro.on_fluid();
   if (hydro.settings.scene.boundary.slab())
-    in_slab.add(voice, hydro.scene, sources, places_of(g), u);
+    in_slab.add(voice, hydro.settings.scene, sources, places_of(g), u);
   else
     add_sums(hydro, sources, g, u);
 }
@@ -231,8 +231,8 @@ void FixStokesDynamicsField::add_sums(Hydrodynamics &hydro, const FlowSources &s
 {
   const sd_field_cloud all = measure_all(world, sources);
   static const sd_field_sum SUMS[] = {SD_FIELD_AUTO, SD_FIELD_DIRECT, SD_FIELD_SPLIT};
-  const Scene::Settings &scene = hydro.settings.scene;
-  const sd_ewald_box box = Scene::lattice_box(domain);
+  const SceneSettings &scene = hydro.settings.scene;
+  const sd_ewald_box box = Lattice::of(domain).ewald_box();
   double range;
   sd_status status = sd_field_plan(&tables, SUMS[scene.far_field], &box, scene.far_field_tolerance,
                                    &all, &g, &range);

@@ -50,15 +50,15 @@ sd_slab_spheres FlowInSlab::with_specks(MPI_Comm world, const sd_slab_walls &wal
 }
 
 /* The splitting for all of these. Radius of a speck */
-double FlowInSlab::choose(const Voice &voice, const Scene &scene, const Piece &sources,
+double FlowInSlab::choose(const Voice &voice, const SceneSettings &settings, const Piece &sources,
                           const std::vector<double> &x)
 {
-  const sd_slab_walls walls = scene.settings.boundary.slab_walls();
+  const sd_slab_walls walls = settings.boundary.slab_walls();
   const sd_slab_spheres all = with_specks(voice.lmp->world, walls, sources, x);
-  sd_ewald_box box = Scene::lattice_box(voice.lmp->domain);
+  sd_ewald_box box = Lattice::of(voice.lmp->domain).ewald_box();
   box.periodic = 1;
   const sd_status status =
-      sd_slab_choose(&walls, &box, &all, AT_SPECKS * scene.settings.far_field_tolerance, &slab);
+      sd_slab_choose(&walls, &box, &all, AT_SPECKS * settings.far_field_tolerance, &slab);
   if (status != SD_OK)
     voice.at_step().fail("the flow of " + text(all.sizes.all.count / 2.0) + " spheres or points at heights from " +
                          text(all.lo) + " to " + text(all.hi) +
@@ -67,7 +67,7 @@ double FlowInSlab::choose(const Voice &voice, const Scene &scene, const Piece &s
   return all.smallest;
 }
 
-void FlowInSlab::add_piece(const Voice &voice, Scene &scene, Piece &piece, std::vector<double> &u)
+void FlowInSlab::add_piece(const Voice &voice, const SceneSettings &settings, Piece &piece, std::vector<double> &u)
 {
   const Lattice lattice = Lattice::of(voice.lmp->domain);
   const int n = (int) piece.a.size();
@@ -78,7 +78,7 @@ void FlowInSlab::add_piece(const Voice &voice, Scene &scene, Piece &piece, std::
   std::vector<double> w(n, 1.0);
   halo.extend(lattice.h, piece.x, {&piece.a, &w});
   sd_mobility_scene where = {};
-  where.how.law = scene.law();
+  where.how.law = settings.law();
   where.how.width = 3;
   where.how.slab = &slab;
   where.n = n;
@@ -108,11 +108,11 @@ static size_t piece_of(size_t k, size_t pieces)
   return (size_t) (((uint64_t) k * 0x9E3779B97F4A7C15ull) >> 32) % pieces;
 }
 
-void FlowInSlab::add(const Voice &voice, Scene &scene, const FlowSources &sources,
+void FlowInSlab::add(const Voice &voice, const SceneSettings &settings, const FlowSources &sources,
                      const std::vector<double> &x, double *u)
 {
   const Lattice lattice = Lattice::of(voice.lmp->domain);
-  const sd_slab_walls walls = scene.settings.boundary.slab_walls();
+  const sd_slab_walls walls = settings.boundary.slab_walls();
   const MPI_Comm world = voice.lmp->world;
   const Piece spheres = {sources.x, sources.a, sources.F};
   std::vector<size_t> wet;
@@ -127,7 +127,7 @@ void FlowInSlab::add(const Voice &voice, Scene &scene, const FlowSources &source
   }
   const double of_all = sum_of_all(world, (double) spheres.a.size());
   if (of_all == 0.0) return;
-  const double speck = choose(voice, scene, spheres, places);
+  const double speck = choose(voice, settings, spheres, places);
   const double at_once = std::max(FEWEST, of_all / voice.lmp->comm->nprocs);
   const size_t pieces = largest_of_all(world, (bigint) std::ceil(wet.size() / at_once));
   for (size_t p = 0; p < pieces; p++) {
@@ -141,7 +141,7 @@ void FlowInSlab::add(const Voice &voice, Scene &scene, const FlowSources &source
     }
     piece.F.resize(piece.x.size() + 3);
     std::vector<double> moves;
-    add_piece(voice, scene, piece, moves);
+    add_piece(voice, settings, piece, moves);
     for (size_t k = 0; k < which.size(); k++)
       for (int d = 0; d < 3; d++)
         u[3 * which[k] + d] += moves[3 * (spheres.a.size() + k) + d];

@@ -20,15 +20,15 @@ class Domain;
 
 namespace StokesDyn {
 
-class Scene;
 class Voice;
 struct FlowSources;
+struct SceneSettings;
 
 class FlowInSlab {
  public:
   /* u [3m] += the flow of these at x [3m], places of this rank; 0 where there is no fluid. Torques are not
    * read. On all ranks together. Errors: no grid for the sum, more images than memory has room for */
-  void add(const Voice &voice, Scene &scene, const FlowSources &sources, const std::vector<double> &x,
+  void add(const Voice &voice, const SceneSettings &, const FlowSources &, const std::vector<double> &x,
            double *u);
   double memory_usage() const;
 
@@ -44,8 +44,8 @@ class FlowInSlab {
   };
   static sd_slab_spheres with_specks(MPI_Comm, const sd_slab_walls &, const Piece &sources,
                                      const std::vector<double> &x);
-  double choose(const Voice &, const Scene &, const Piece &sources, const std::vector<double> &x);
-  void add_piece(const Voice &, Scene &, Piece &piece, std::vector<double> &u);
+  double choose(const Voice &, const SceneSettings &, const Piece &sources, const std::vector<double> &x);
+  void add_piece(const Voice &, const SceneSettings &, Piece &piece, std::vector<double> &u);
 };
 
 }    // namespace StokesDyn

@@ -198,7 +198,7 @@ void PairStokesDynamics::init_style()
     fail(lmp, voice.command + " may appear only once in a hybrid pair style");
   require_atoms();
   single_enable = force->pair != this;    // alone it would say that there are no forces
-  const Scene::Settings &scene = hydro.settings.scene;
+  const SceneSettings &scene = hydro.settings.scene;
   if (hydro.settings.precondition == StokesSettings::WAVES &&
       !(domain->xperiodic && domain->yperiodic && domain->zperiodic))
     voice.fail("keyword precondition: 'waves' requires a periodic box");

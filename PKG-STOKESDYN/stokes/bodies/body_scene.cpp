@@ -14,10 +14,10 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-BodyScene::BodyScene(const Voice &voice, Scene &scene, const Ambient &ambient, RigidClumps &rigid,
-                     const ClumpPoses &poses, const Given &given, Lubrication &lubrication) :
-    Pointers(voice.lmp), scene(scene), ambient(ambient), rigid(rigid), poses(poses), given(given),
-    lubrication(lubrication), voice(voice)
+BodyScene::BodyScene(const Voice &voice, const Scene &scene, Engine &engine, Shells &shells, const Ambient &ambient,
+                     const ClumpPoses &poses, Lubrication &lubrication) :
+    Pointers(voice.lmp), voice(voice), scene(scene), engine(engine), shells(shells), ambient(ambient), poses(poses),
+    rigid(poses.rigid.settings), given(poses.given), lubrication(lubrication)
 {
 }
 
@@ -55,14 +55,14 @@ void BodyScene::place(int numbers)
 void BodyScene::assemble(Films films)
 {
   if (films != STANDING_FILMS) film_arm.clear();
-  if (scene.shells) place_points();
+  if (shells.on()) place_points();
   arrange();
   stand_at_wall();
   put_together();
   if (films != NO_FILMS) tie_films(films);
   find_known();
   if (given.velocities) return rest_in(flow);
-  if (scene.shells)
+  if (shells.on())
     flow_at_points(velocity.data(), 3);
   else
     u = flow;
@@ -72,7 +72,7 @@ void BodyScene::assemble(Films films)
 
 void BodyScene::rest_in(const std::vector<double> &slip, bool strained)
 {
-  if (scene.shells)
+  if (shells.on())
     slip_at_points(slip, strained);
   else
     u = slip;
@@ -87,7 +87,7 @@ void BodyScene::arrange()
 {
   const size_t n = scene.size();
   /* rows of clumps that are not rigid are free spheres as well */
-  const int free_ones = rigid.settings.on ? scene.lone() : scene.size();
+  const int free_ones = rigid.on ? scene.lone() : scene.size();
   member.clear();
   shaped.clear();
   loner.clear();
@@ -104,7 +104,7 @@ void BodyScene::arrange()
 
 void BodyScene::add_points(const sd_multiblob_shape &shape, const std::vector<int> &rows)
 {
-  const int *first = scene.shells->first_of_rows();
+  const int *first = shells.first_of_rows();
   for (int k = 0, s = 0; k < shape.points.m; k++) {
     while (shape.row[k] >= shape.first[s + 1]) s++;
     member.push_back(first[rows[s]] + shape.row[k] - shape.first[s]);
@@ -113,15 +113,15 @@ void BodyScene::add_points(const sd_multiblob_shape &shape, const std::vector<in
 
 const sd_multiblob_shape &BodyScene::points_of(const ClumpPoses::Clump &clump) const
 {
-  return rigid.shapes.points(poses.shape(clump), *scene.shells);
+  return poses.rigid.shapes.points(poses.shape(clump), shells);
 }
 
 void BodyScene::add_free(int k)
 {
   const double w = scene.local().w[k], eta = 1.0 / (w * w);
   whole[k] = k;
-  if (scene.shells) {
-    const sd_multiblob_shape &shape = scene.shells->free_sphere(scene.shells->kinds_of_rows()[k]);
+  if (shells.on()) {
+    const sd_multiblob_shape &shape = shells.free_sphere(shells.kinds_of_rows()[k]);
     add_points(shape, {k});
     shaped.push_back({&shape.points, {1, 0, 0, 0, 1, 0, 0, 0, 1}, scene.local().a[k], eta, nullptr});
   } else if (slowed_by_wall()) {
@@ -142,7 +142,7 @@ void BodyScene::add(const ClumpPoses::Clump &clump)
     whole[row] = loner.size() + shaped.size();
     sd_multiply3(clump.pose, is.shape.x + 3 * (size_t) k, &arm[3 * (size_t) row]);
   }
-  if (scene.shells) {
+  if (shells.on()) {
     const sd_multiblob_shape &shape = points_of(clump);
     double turn[9];
     add_points(shape, rows);
@@ -150,7 +150,7 @@ void BodyScene::add(const ClumpPoses::Clump &clump)
     sd_multiblob_shape_stand(&shape, clump.pose, body.R, turn);
   } else {
     member.insert(member.end(), rows.begin(), rows.end());
-    body.shape = &rigid.shapes.blocks(is, rigid.settings);
+    body.shape = &poses.rigid.shapes.blocks(is, rigid);
     std::copy_n(clump.pose, 9, body.R);
   }
   shaped.push_back(body);
@@ -178,17 +178,14 @@ static const double GAP_TO_KEEP = 5e-4;
 
 bool BodyScene::films_by_places() const
 {
-  return bodies.tie && lubrication.settings.gap >= GAP_TO_KEEP && !bodies.known && !rigid.settings.on &&
+  return bodies.tie && lubrication.settings.gap >= GAP_TO_KEEP && !bodies.known && !rigid.on &&
       !scene.settings.boundary.walled();
 }
 
-void BodyScene::stand_films(const std::vector<int> &who)
+void BodyScene::stand_films()
 {
-  if (!lubrication.settings.on) return;
-  scene.stand(who, ambient);
-  scene.turn_shells();
   lubrication.place(scene, &ambient);
-  if (!rigid.settings.on) return;
+  if (!rigid.on) return;
   film_arm.assign(3 * (size_t) scene.size() + 3, 0.0);
   for (const ClumpPoses::Clump &clump : poses.clumps()) {
     const ClumpShape &is = poses.shape(clump);
@@ -210,24 +207,24 @@ static sd_status nobody(void *ctx, const double * /*F*/, double *out)
 void BodyScene::put_together()
 {
   const int n = scene.size();
-  const bool sees = scene.anybody_sees();
-  const bool clumps = rigid.settings.on;    // not one, on any rank: every sphere is a body, in the order of rows
-  alone.how.width = scene.shells ? 3 : width;
+  const bool sees = engine.anybody_sees();
+  const bool clumps = rigid.on;    // not one, on any rank: every sphere is a body, in the order of rows
+  alone.how.width = shells.on() ? 3 : width;
   alone.n = n;
   bodies = {};
   bodies.lone = loner.size();
   bodies.loner = loner.data();
   bodies.shaped = shaped.size();
   bodies.body = shaped.data();
-  bodies.none_shaped = !scene.shells && !rigid.settings.on && !slowed_by_wall();
+  bodies.none_shaped = !shells.on() && !rigid.on && !slowed_by_wall();
   bodies.spheres = {n, width, clumps ? whole.data() : nullptr, clumps ? arm.data() : nullptr};
   bodies.points = {n, width, nullptr, nullptr};
   bodies.film_arm = film_arm.empty() ? nullptr : film_arm.data();
   bodies.D = resistance.data();
   bodies.apply = sees ? sd_mobility_apply : nobody;
-  bodies.apply_ctx = sees ? (void *) scene.mobility() : &alone;
-  bodies.world = scene.ranks();
-  if (scene.shells) put_points();
+  bodies.apply_ctx = sees ? (void *) engine.mobility() : &alone;
+  bodies.world = engine.ranks();
+  if (shells.on()) put_points();
 }
 
 // --- what is given ---------------------------------------------------------------------------------
@@ -263,7 +260,7 @@ std::vector<int> BodyScene::spheres_of(const sd_body &body) const
 {
   std::vector<int> rows;
   for (int k = 0; k < (body.shape ? body.shape->m : 1); k++) {
-    const int row = scene.shells ? sphere[body.row[k]] : body.row[k];
+    const int row = shells.on() ? sphere[body.row[k]] : body.row[k];
     if (rows.empty() || rows.back() != row) rows.push_back(row);
   }
   return rows;
@@ -282,21 +279,21 @@ sd_status BodyScene::stand_at_wall(sd_body &body, double count)
     x.insert(x.end(), spheres.x + 3 * k, spheres.x + 3 * k + 3);
     a.push_back(spheres.a[k]);
     extent = std::max(extent, std::sqrt(sd_dot(&arm[3 * k], &arm[3 * k])) + spheres.a[k]);
-    if (!scene.shells) continue;
-    turn.insert(turn.end(), scene.shells->turn_of(k), scene.shells->turn_of(k) + 9);
-    mask.push_back(scene.shells->mask_of(k));
-    kind.push_back(scene.shells->kinds_of_rows()[k]);
-    first.push_back(first.back() + scene.shells->points_of_row(k));
+    if (!shells.on()) continue;
+    turn.insert(turn.end(), shells.turn_of(k), shells.turn_of(k) + 9);
+    mask.push_back(shells.mask_of(k));
+    kind.push_back(shells.kinds_of_rows()[k]);
+    first.push_back(first.back() + shells.points_of_row(k));
   }
   const sd_wall &wall = scene.settings.boundary.nearest(centre);
   const double height = sd_wall_height(&wall, centre);
   if (body.shape && !sd_body_wall_pays(body.shape->m, (int) count, height, extent)) return SD_OK;
   standing.emplace_back();
   sd_body_shape *shape = &standing.back();
-  const sd_multiblob_spheres shells = {x.data(),    a.data(),   turn.data(),
+  const sd_multiblob_spheres stand = {x.data(),    a.data(),   turn.data(),
                                        mask.data(), (int) rows.size(), kind.data(), first.data()};
-  const sd_status status = scene.shells
-      ? sd_multiblob_wall_shape(scene.shells->all_models(), &wall, &shells, centre, shape)
+  const sd_status status = shells.on()
+      ? sd_multiblob_wall_shape(shells.all_models(), &wall, &stand, centre, shape)
       : sd_body_wall_shape(&wall, (int) rows.size(), 6, x.data(), a.data(), centre, shape);
   if (status == SD_ESINGULAR && body.shape) return SD_OK;    // those of open space will do
   if (status != SD_OK) return status;
@@ -322,7 +319,7 @@ void BodyScene::stand_at_wall()
 void BodyScene::carry()
 {
   const auto &clumps = poses.clumps();
-  if (!ambient.gradients() || clumps.empty() || scene.shells || slowed_by_wall()) return;
+  if (!ambient.gradients() || clumps.empty() || shells.on() || slowed_by_wall()) return;
   std::vector<double> gradient(9 * clumps.size()), work(sd_bodies_work(&bodies));
   double centre[3];
   for (size_t c = 0; c < clumps.size(); c++) {

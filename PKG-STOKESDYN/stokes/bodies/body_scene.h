@@ -9,13 +9,13 @@
 #define SD_BODY_SCENE_H
 
 #include "ambient.h"
-#include "body_noise.h"
 #include "callback.h"
 #include "clump_poses.h"
+#include "engine.h"
 #include "lubrication.h"
 #include "pointers.h"
-#include "rigid_clumps.h"
 #include "scene.h"
+#include "shells.h"
 
 #include "sd_bodies.h"
 #include "sd_tie.h"
@@ -27,10 +27,10 @@ namespace StokesDyn {
 
 class BodyScene : protected LAMMPS_NS::Pointers {
  public:
-  BodyScene(const Voice &voice, Scene &, const Ambient &, RigidClumps &, const ClumpPoses &,
-            const Given &, Lubrication &);
+  BodyScene(const Voice &voice, const Scene &, Engine &, Shells &, const Ambient &, const ClumpPoses &,
+            Lubrication &);
 
-  /* Vectors have that many numbers of a sphere. The scene has been updated, and the clumps found. */
+  /* Vectors have that many numbers of a sphere. The scene stands, and the clumps have been found. */
   void place(int width);
   /* FILMS: those between the spheres where they stand, in the fluid of this step. NOISY_FILMS: the same, and
    * random forces will be drawn. STANDING_FILMS: those that stand_films() has left, with the arms of then */
@@ -47,7 +47,7 @@ class BodyScene : protected LAMMPS_NS::Pointers {
    * clumps with shells that interact */
   bool joined() const
   {
-    return scene.shells || (rigid.settings.on && !rigid.settings.each_alone() && rigid.settings.shell > 1);
+    return shells.on() || (rigid.on && !rigid.each_alone() && rigid.shell > 1);
   }
 
   /* By spheres, width numbers each: loads; velocity of the fluid, where velocities are given less
@@ -64,8 +64,8 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   /* Where the engine draws a part of its matrix at once (divides of sd_mobility.h): the bodies with the rest
    * of it. It stands as long as they do. */
   sd_bodies undrawn() const;
-  /* The films of these atoms where they stand now, before the points of the bodies go elsewhere */
-  void stand_films(const std::vector<int> &who);
+  /* The films where the scene stands now, before the points of the bodies go elsewhere */
+  void stand_films();
   /* Is the factor of films (sd_tie.h) a matter of where lone spheres stand, and nothing else? Then it may be
    * that of other places [3 spheres], where films stand until they are back where the spheres do. */
   bool films_by_places() const;
@@ -93,13 +93,15 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   double memory_usage() const;
 
  private:
-  Scene &scene;
+  const Voice voice;
+  const Scene &scene;
+  Engine &engine;
+  Shells &shells;
   const Ambient &ambient;
-  RigidClumps &rigid;
   const ClumpPoses &poses;
+  const RigidClumps::Settings &rigid;
   const Given &given;
   Lubrication &lubrication;
-  const Voice voice;
   Owned<sd_tie, sd_tie_free> tie;
 
   /* for the core, by spheres, by points */

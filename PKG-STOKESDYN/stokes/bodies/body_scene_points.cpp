@@ -17,7 +17,7 @@ void BodyScene::orient()
     double pose[9], turn[9];
     sd_multiblob_shape_stand(&points, clump.pose, pose, turn);
     for (int k = 0; k < poses.own_clump(clump).n; k++)
-      scene.shells->turn_row(scene.row_of_member((int) poses.member_of(clump, k)), turn,
+      shells.turn_row(scene.row_of_member((int) poses.member_of(clump, k)), turn,
                              points.mask[k]);
   }
 }
@@ -26,7 +26,7 @@ void BodyScene::orient()
 void BodyScene::place_points()
 {
   enum { VELOCITY = 0, SLOPE = 3, BEND = 12 };
-  const size_t n = scene.size(), points = scene.shells->first_of_rows()[n];
+  const size_t n = scene.size(), points = shells.first_of_rows()[n];
   const double *gradients = ambient.gradients(), *curvatures = ambient.curvatures();
   const size_t bends = curvatures ? SD_FLOW_SECOND : 0;
   std::vector<double> rows = scene.rows(BEND + (int) bends, [&](int i, double *out) {
@@ -37,8 +37,8 @@ void BodyScene::place_points()
   scene.drift(rows.data(), BEND + (int) bends, 1.0);
   take_apart(rows, n, {{&velocity, 3}, {&slope, 9}, {&bend, bends}});
   const sd_spheres spheres = scene.local();
-  of_points.model = scene.shells->all_models();
-  of_points.spheres = scene.shells->spheres(spheres, (int) n);
+  of_points.model = shells.all_models();
+  of_points.spheres = shells.spheres(spheres, (int) n);
   of_points.w = spheres.w;
   r.resize(3 * points + 3);
   of_points.r = r.data();
@@ -47,7 +47,7 @@ void BodyScene::place_points()
   sd_multiblob_expand(of_points.model, &of_points.spheres, r.data(), nullptr, b);
   sphere.resize(points);
   for (size_t k = 0; k < n; k++)
-    std::fill_n(sphere.begin() + of_points.spheres.first[k], scene.shells->points_of_row(k), (int) k);
+    std::fill_n(sphere.begin() + of_points.spheres.first[k], shells.points_of_row(k), (int) k);
   D.resize(3 * points + 3);
   sd_multiblob_drags(&of_points, b, D.data());
 }
@@ -76,14 +76,14 @@ void BodyScene::slip_at_points(const std::vector<double> &slip, bool strained)
 /* Of the bodies: points on spheres */
 void BodyScene::put_points()
 {
-  const int n = scene.size(), all = scene.shells->first_of_rows()[n];
+  const int n = scene.size(), all = shells.first_of_rows()[n];
   bodies.points = {all, 3, sphere.data(), r.data()};
   bodies.D = D.data();
   whole_shells.resize(n + 1);
   for (int k = 0; k < n; k++)
     whole_shells[k] = (char) sd_multiblob_is_whole(&of_points.spheres, k);
-  const char *whole_ones = rigid.settings.on ? whole_shells.data() : nullptr;
-  faces = {scene.shells->faces(), of_points.spheres.turn, whole_ones, of_points.spheres.kind,
+  const char *whole_ones = rigid.on ? whole_shells.data() : nullptr;
+  faces = {shells.faces(), of_points.spheres.turn, whole_ones, of_points.spheres.kind,
            of_points.spheres.first};
   bodies.faces = &faces;
   alone.n = all;
@@ -109,7 +109,7 @@ void BodyScene::slip_of_swimmers()
     const sd_squirmer_stroke stroke = {{row[0], row[1], row[2]}, row[B1], row[B2], row[BETA]};
     const size_t first = of_points.spheres.first[k];
     const int kind = of_points.spheres.kind[k];
-    sd_squirmer_slip(&scene.shells->model(kind), &scene.shells->squirmer(kind), &stroke,
+    sd_squirmer_slip(&shells.model(kind), &shells.squirmer(kind), &stroke,
                      of_points.spheres.a[k], &r[3 * first], &u[3 * first]);
   }
 }

@@ -14,9 +14,9 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-ClumpPoses::ClumpPoses(LAMMPS *lmp, Scene &scene, const Ambient &ambient, RigidClumps &rigid,
-                       const Given &given) :
-    Pointers(lmp), scene(scene), ambient(ambient), rigid(rigid), given(given)
+ClumpPoses::ClumpPoses(LAMMPS *lmp, const WholeClumps &whole, const Epochs &epochs, const Ambient &ambient,
+                       RigidClumps &rigid, const Given &given) :
+    Pointers(lmp), rigid(rigid), given(given), whole(whole), epochs(epochs), ambient(ambient)
 {
 }
 
@@ -24,7 +24,7 @@ ClumpPoses::ClumpPoses(LAMMPS *lmp, Scene &scene, const Ambient &ambient, RigidC
 template <int WIDTH> void ClumpPoses::gather(const std::vector<RigidClumps::OwnClump> &all)
 {
   const double *gradients = ambient.gradients(), *jumps = ambient.jumps();
-  const bool moving = given.velocities, turns = scene.settings.rotation;
+  const bool moving = given.velocities, turns = rigid.settings.rotation;
   const size_t n = rigid.members().size(), flows = WIDTH == COLUMNS ? 3 * n : 0;
   for (auto *numbers : {&spheres.eta, &spheres.radius}) numbers->resize(n + 1);
   spheres.x.resize(3 * n + 3);
@@ -48,18 +48,18 @@ template <int WIDTH> void ClumpPoses::gather(const std::vector<RigidClumps::OwnC
   size_t b = 0;    // whose member m is: bodies are in the order of their members
   const auto add_load = [&](const double *x, const double *FT) {
     double arm[3];
-    sd_minus(x, &scene.whole.x[3 * (size_t) rigid.members()[all[b].begin]], arm);
+    sd_minus(x, &whole.x[3 * (size_t) rigid.members()[all[b].begin]], arm);
     sd_clump_add_load(arm, FT, &loads[6 * b]);
   };
   const auto take = [&](size_t m, const double *of) {
-    const int k = rigid.places()[m], *edges = &scene.whole.edges[3 * m];
+    const int k = rigid.places()[m], *edges = &whole.edges[3 * m];
     if (k < 0) return;
     while (k >= all[b].begin + all[b].n) b++;
     spheres.eta[k] = of[ETA];
     spheres.radius[k] = of[RADIUS];
-    copy<3>(&scene.whole.x[3 * m], &spheres.x[3 * (size_t) k]);
+    copy<3>(&whole.x[3 * m], &spheres.x[3 * (size_t) k]);
     if (!moving)
-      add_load(&scene.whole.x[3 * m], of + LOAD);
+      add_load(&whole.x[3 * m], of + LOAD);
     else {
       copy<3>(of + VELOCITY, &spheres.v[3 * (size_t) k]);
       copy<3>(of + OMEGA, &spheres.omega[3 * (size_t) k]);
@@ -70,12 +70,12 @@ template <int WIDTH> void ClumpPoses::gather(const std::vector<RigidClumps::OwnC
     copy<9>(of + GRADIENT, &spheres.gradient[9 * (size_t) k]);
     if (jumps) sd_add_edges(jumps, edges, &spheres.flow[3 * (size_t) k]);
   };
-  scene.whole.gather<WIDTH>(row, take);
+  whole.gather<WIDTH>(row, take);
 }
 
 void ClumpPoses::find()
 {
-  found.set(scene.all_epochs().lists);
+  found.set(epochs.lists);
   all_clumps.clear();
   find_lone();
   if (!rigid.settings.on) return;
@@ -105,7 +105,7 @@ void ClumpPoses::find()
 
 void ClumpPoses::find_lone()
 {
-  if (!lone_found.first_in(scene.all_epochs().selection)) return;
+  if (!lone_found.first_in(epochs.selection)) return;
   all_lone.clear();
   const auto free = [this](int i) {
     return !rigid.settings.on || atom->molecule[i] == 0;
@@ -119,7 +119,7 @@ void ClumpPoses::find_held()
 {
   for (Clump &clump : all_clumps) clump.known = SD_BODY_FREE;
   if (!given.known || !rigid.settings.on) return;
-  const std::vector<double> of_member = scene.whole.gather(7, [this](int i, double *out) {
+  const std::vector<double> of_member = whole.gather(7, [this](int i, double *out) {
     out[0] = given.known(i, out + 1);
   });
   int64_t split[2] = {RigidClumps::NOBODY, RigidClumps::NOBODY};    // by held, by pin
@@ -135,7 +135,7 @@ void ClumpPoses::find_held()
     double arm[3];
     std::copy_n(first + 1, 6, clump.V);
     if (ambient.jumps())
-      sd_add_edges(ambient.jumps(), &scene.whole.edges[3 * member_of(clump, 0)], clump.V);
+      sd_add_edges(ambient.jumps(), &whole.edges[3 * member_of(clump, 0)], clump.V);
     sd_minus(clump.pose + 9, &spheres.x[3 * (size_t) own_clump(clump).begin], arm);
     sd_clump_shift_velocity(arm, clump.V);
   }
@@ -160,7 +160,7 @@ void ClumpPoses::moves(const double *V)
  * not on a line say nothing that their velocities do not. */
 sd_clump_motion ClumpPoses::look_at(const Clump &clump) const
 {
-  const bool strains = ambient.gradients(), spins = scene.settings.rotation;
+  const bool strains = ambient.gradients(), spins = rigid.settings.rotation;
   const size_t at = 3 * (size_t) own_clump(clump).begin;
   sd_clump_motion m = {};
   m.x = &spheres.x[at];
@@ -201,17 +201,17 @@ void ClumpPoses::velocities(int width, const ToAtom &take)
       sd_clump_move_alone(&is, &motion, clump.known == SD_BODY_HELD ? nullptr : on_clump, clump.V, &out);
       for (size_t k = 0; k < n; k++) {
         const size_t m = member_of(clump, (int) k);
-        if (ambient.jumps()) sd_add_edges(back, &scene.whole.edges[3 * m], &rows[ROW * k]);
+        if (ambient.jumps()) sd_add_edges(back, &whole.edges[3 * m], &rows[ROW * k]);
         give(m, &rows[ROW * k]);
       }
     }
   };
-  scene.whole.scatter(ROW, all, [&](int i, const double *of) { take(i, of, of + 6); });
+  whole.scatter(ROW, all, [&](int i, const double *of) { take(i, of, of + 6); });
 }
 
 void ClumpPoses::drag(const Drag &take, std::vector<char> &left_over)
 {
-  const bool turns = scene.settings.rotation;
+  const bool turns = rigid.settings.rotation;
   enum { LOOSE, FORCE, TORQUE = FORCE + 3, ROW = TORQUE + 3 };
   std::vector<double> rows;
   const auto all = [&](const auto &give) {
@@ -230,7 +230,7 @@ void ClumpPoses::drag(const Drag &take, std::vector<char> &left_over)
   };
   left_over.assign(atom->nlocal + 1, 0);
   for (int i = 0; i < atom->nlocal; i++) left_over[i] = atom->molecule[i] == 0;
-  scene.whole.scatter(ROW, all, [&](int i, const double *of) {
+  whole.scatter(ROW, all, [&](int i, const double *of) {
     if (of[LOOSE] == 0.0)
       take(i, of + FORCE);
     else

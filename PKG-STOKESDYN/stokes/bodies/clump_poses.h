@@ -8,7 +8,7 @@
 #include "ambient.h"
 #include "pointers.h"
 #include "rigid_clumps.h"
-#include "scene.h"
+#include "whole_clumps.h"
 
 #include "sd_body.h"
 #include "sd_clump_motion.h"
@@ -67,7 +67,10 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
     sd_body_known known;
   };
 
-  ClumpPoses(LAMMPS_NS::LAMMPS *lmp, Scene &, const Ambient &, RigidClumps &, const Given &);
+  ClumpPoses(LAMMPS_NS::LAMMPS *lmp, const WholeClumps &, const Epochs &, const Ambient &, RigidClumps &,
+             const Given &);
+  RigidClumps &rigid;
+  const Given &given;
 
   /* Those of this step, by what is given. Errors, on all ranks: those of RigidClumps; a clump held
    * or pinned in part; a clump that is not rigid, or not all selected. */
@@ -77,7 +80,7 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
    * begins, atoms have other indices */
   const std::vector<Clump> &clumps() const { return stands() ? all_clumps : no_clumps; }
   const std::vector<int> &lone() const { return stands() ? all_lone : nobody_lone; }
-  bool stands() const { return found.is(scene.all_epochs().lists); }
+  bool stands() const { return found.is(epochs.lists); }
   const RigidClumps::OwnClump &own_clump(const Clump &clump) const { return rigid.own_clump(clump.number); }
   const ClumpShape &shape(const Clump &clump) const { return *own_clump(clump).shape; }
   /* Sphere k of a clump, in the order of its shape: its number among the members of whole */
@@ -109,10 +112,9 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
   double memory_usage() const { return 24.0 * sizeof(double) * (double) spheres.eta.capacity(); }
 
  private:
-  Scene &scene;
+  const WholeClumps &whole;
+  const Epochs &epochs;
   const Ambient &ambient;
-  RigidClumps &rigid;
-  const Given &given;
 
   Stamp found;
   std::vector<Clump> all_clumps;

@@ -1,7 +1,8 @@
 #include "lubrication.h"
 
+#include "ambient.h"
 #include "keywords.h"
-#include "ranks.h"
+#include "scene.h"
 
 #include "sd_linear.h"
 #include "sd_lubrication_noise.h"
@@ -24,10 +25,12 @@ void Lubrication::check(sd_status status) const
 
 /* Functions for all pairs that there are, made anew when radii become more different, and films of
  * the shells that spheres are now: another pair_style may have come in between. */
-void Lubrication::provide(double largest, double smallest, bool halves)
+void Lubrication::provide(double largest, double smallest)
 {
   const double ratio = largest / smallest;
-  const std::array<int, 3> kind = {shells.points, shells.one_body, halves};
+  const bool halves = shells.on() && shells.halves();
+  const int points = shells.settings.points, one_body = shells.settings.one_body;
+  const std::array<int, 3> kind = {points, one_body, halves};
   if (shells.on() && ratio > SD_FILM_LARGEST_RATIO)
     voice.fail("keyword lubrication: radii from " + text(smallest) + " to " + text(largest) +
                ": with multiblob lubrication is for ratios of radii up to 10; use group to select "
@@ -45,8 +48,8 @@ void Lubrication::provide(double largest, double smallest, bool halves)
     films.exact = nullptr;
   }
   if (!shells.on() || (films.exact && kind == kind_of_films)) return;
-  check(halves ? sd_films_create_by_radius(shells.one_body, functions.get(), &films)
-               : sd_films_create(shells.points, shells.one_body, functions.get(), &films));
+  check(halves ? sd_films_create_by_radius(one_body, functions.get(), &films)
+               : sd_films_create(points, one_body, functions.get(), &films));
   kind_of_films = kind;
 }
 
@@ -68,24 +71,24 @@ void Lubrication::surround(const Scene &where, const double *places)
   if (where.drift_of_images()) halo.place(where.drift_of_images(), nullptr, drift.data());
 }
 
-void Lubrication::place(Scene &where, const Ambient *fluid, bool noisy)
+void Lubrication::place(const Scene &where, const Ambient *fluid, bool noisy)
 {
   surround(where, where.local().x);
   place_films(where, fluid, noisy);
   for (int k = 0; k < where.settings.boundary.walls; k++) add_wall(where, where.settings.boundary.wall[k]);
 }
 
-void Lubrication::place_at(Scene &where, const std::vector<double> &places)
+void Lubrication::place_at(const Scene &where, const std::vector<double> &places)
 {
   surround(where, places.data());
   place_films(where, nullptr, false);
 }
 
 /* In these surroundings */
-void Lubrication::place_films(Scene &where, const Ambient *fluid, bool noisy)
+void Lubrication::place_films(const Scene &where, const Ambient *fluid, bool noisy)
 {
-  const bool halves = where.shells && where.shells->halves();
-  if (where.largest() > 0.0) provide(where.largest(), where.smallest(), halves);
+  const bool halves = shells.on() && shells.halves();
+  if (where.largest() > 0.0) provide(where.largest(), where.smallest());
   const bool asks_flow = !shells.on() || where.settings.boundary.walls > 0;
   if (asks_flow) u.assign(6 * (size_t) where.size() + 6, 0.0);
   if (asks_flow && fluid) {
@@ -96,7 +99,7 @@ void Lubrication::place_films(Scene &where, const Ambient *fluid, bool noisy)
   scene.functions = functions.get();
   scene.films = shells.on() ? &films : nullptr;
   points.clear();
-  for (size_t k = 0; k < a.size() && halves; k++) points.push_back(where.shells->points(a[k]));
+  for (size_t k = 0; k < a.size() && halves; k++) points.push_back(shells.points(a[k]));
   scene.points = halves ? points.data() : nullptr;
   scene.gap = settings.gap;
   scene.range = settings.range;
@@ -123,12 +126,12 @@ void Lubrication::add_wall(const Scene &where, const sd_wall &wall)
     const double *x = s.x + 3 * k, *flow = &u[6 * k], eta = 1.0 / (s.w[k] * s.w[k]);
     double B[36], E[6];
     if (shells.on()) {
-      const sd_multiblob *model = &where.shells->model_of(s.a[k]);
-      const sd_multiblob_spheres one = {x, s.a + k, where.shells->turn_of(k), nullptr, 1, nullptr, nullptr};
+      const sd_multiblob *model = &shells.model_of(s.a[k]);
+      const sd_multiblob_spheres one = {x, s.a + k, shells.turn_of(k), nullptr, 1, nullptr, nullptr};
       r.resize(3 * model->n);
       b.resize(model->n);
       sd_multiblob_expand(model, &one, r.data(), nullptr, b.data());
-      const sd_multiblob_sphere sphere = {model, x, s.a[k], r.data(), shells.one_body};
+      const sd_multiblob_sphere sphere = {model, x, s.a[k], r.data(), shells.settings.one_body};
       check(sd_multiblob_wall_film(&sphere, &wall, settings.gap, eta, flow, B, E));
     } else {
       const sd_wall_film film = sd_wall_film_at(s.a[k], sd_wall_height(&wall, x), settings.gap);

@@ -7,8 +7,9 @@
 #define SD_STOKES_LUBRICATION_H
 
 #include "callback.h"
+#include "halo.h"
 #include "pointers.h"
-#include "scene.h"
+#include "shells.h"
 
 #include "sd_lubrication.h"
 #include "sd_random.h"
@@ -19,6 +20,9 @@
 
 namespace StokesDyn {
 
+class Ambient;
+class Scene;
+
 class Lubrication : protected LAMMPS_NS::Pointers {
  public:
   struct Settings {
@@ -27,20 +31,19 @@ class Lubrication : protected LAMMPS_NS::Pointers {
     double gap = 1e-3, range = 2.0;
   };
   const Settings &settings;
-  /* where spheres are shells of points, films are of what these do not know */
-  const Shells::Settings &shells;
 
-  Lubrication(const Voice &voice, const Settings &settings, const Shells::Settings &shells) :
-      Pointers(voice.lmp), settings(settings), shells(shells), voice(voice), halo(world)
+  /* Where spheres are shells of points, films are of what these do not know. */
+  Lubrication(const Voice &voice, const Settings &settings, const Shells &shells) :
+      Pointers(voice.lmp), settings(settings), voice(voice), shells(shells), halo(world)
   {
   }
 
   /* The rows of the scene where they stand now, and copies around them, in the fluid of this step (nullptr:
    * it and the box rest), on all ranks. noisy: random forces will be drawn. Error: radii that are too
    * different. */
-  void place(Scene &scene, const Ambient *fluid, bool noisy = false);
+  void place(const Scene &scene, const Ambient *fluid, bool noisy = false);
   /* The same spheres at x [3 n], in a fluid and a box that rest, without walls */
-  void place_at(Scene &scene, const std::vector<double> &x);
+  void place_at(const Scene &scene, const std::vector<double> &x);
   /* Since then */
   sd_lubrication *matrix() { return &near; }
   /* [copies] as sd_tied.h has it */
@@ -56,6 +59,7 @@ class Lubrication : protected LAMMPS_NS::Pointers {
 
  private:
   const Voice voice;
+  const Shells &shells;
   Owned<sd_lubrication, sd_lubrication_free> near;
   std::unique_ptr<sd_two_sphere, void (*)(sd_two_sphere *)> functions{nullptr, sd_two_sphere_free};
   double largest_ratio = 0.0;
@@ -69,9 +73,9 @@ class Lubrication : protected LAMMPS_NS::Pointers {
   std::vector<double> x, a, w, drift, above;
 
   void surround(const Scene &where, const double *places);
-  void place_films(Scene &where, const Ambient *fluid, bool noisy);
+  void place_films(const Scene &where, const Ambient *fluid, bool noisy);
   void add_wall(const Scene &where, const sd_wall &wall);
-  void provide(double largest, double smallest, bool halves);
+  void provide(double largest, double smallest);
   void check(sd_status status) const;
 };
 

@@ -17,4 +17,14 @@ Lattice Lattice::of(const LAMMPS_NS::Domain *domain)
   return l;
 }
 
+sd_ewald_box Lattice::ewald_box() const
+{
+  sd_ewald_box box = {};
+  box.periodic = periodic[0];
+  std::copy_n(origin, 3, box.origin);
+  std::copy_n(h, 3, box.edge);
+  for (int d = 0; d < 3; d++) box.tilt[d] = h[5 - d];    // xy xz yz
+  return box;
+}
+
 }    // namespace StokesDyn

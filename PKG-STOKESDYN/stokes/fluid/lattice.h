@@ -2,6 +2,8 @@
 #ifndef SD_STOKES_LATTICE_H
 #define SD_STOKES_LATTICE_H
 
+#include "sd_ewald_box.h"
+
 namespace LAMMPS_NS {
 class Domain;
 }
@@ -16,6 +18,8 @@ struct Lattice {
   int periodic[3];
 
   static Lattice of(const LAMMPS_NS::Domain *domain);
+  /* The same box for sums over its images: periodic in all directions, or in none */
+  sd_ewald_box ewald_box() const;
 };
 
 }    // namespace StokesDyn

@@ -94,7 +94,7 @@ void Noise::draw_alone(const Hydrodynamics &hydro, size_t width, const ToAtom &t
 /* The rows with their numbers w and drags D, and the matrix: whole */
 sd_noise_spheres Noise::find_spheres(Hydrodynamics &hydro, size_t width)
 {
-  Scene &scene = hydro.scene;
+  const Scene &scene = hydro.scene;
   const size_t n = scene.size();
   D = scene.rows((int) width, [&hydro, width](int i, double *out) {
     for (size_t d = 0; d < width; d++) out[d] = hydro.ambient.resistance(i, d);
@@ -105,7 +105,8 @@ sd_noise_spheres Noise::find_spheres(Hydrodynamics &hydro, size_t width)
     sd_random_normals(&of_sphere, scene.tag(k), (int) width, &w[width * k]);
   const size_t engine_width = hydro.rotation() ? 6 : 3;
   for (auto *rows : {&engine_F, &engine_u}) rows->assign(engine_width * (n + 1), 0.0);
-  return {n, width, engine_width, D.data(), scene.anybody_sees() ? sd_mobility_apply : nullptr, scene.mobility(),
+  return {n, width, engine_width, D.data(), hydro.engine.anybody_sees() ? sd_mobility_apply : nullptr,
+          hydro.engine.mobility(),
           engine_F.data(), engine_u.data()};
 }
 
@@ -119,7 +120,7 @@ void Noise::no_root(sd_status status) const
 
 void Noise::draw_together(Hydrodynamics &hydro, size_t width, const ToAtom &take)
 {
-  sd_mobility *engine = hydro.scene.mobility();
+  sd_mobility *engine = hydro.engine.mobility();
   sd_noise_spheres spheres = find_spheres(hydro, width);
   divided = spheres.apply && sd_mobility_divides(engine);
   if (divided) spheres.apply = sd_mobility_apply_rest;
@@ -128,7 +129,7 @@ void Noise::draw_together(Hydrodynamics &hydro, size_t width, const ToAtom &take
   M.apply = sd_noise_spheres_apply;
   M.ctx = &spheres;
   M.D = D.data();
-  M.world = hydro.scene.ranks();
+  M.world = hydro.engine.ranks();
   sd_status status = sd_noise_velocities(&process, &M, w.data(), tolerance / 3.0, y.data(), &last);
   const sd_random_key of_waves = key(SD_RANDOM_GRID);
   if (status == SD_OK && divided) status = sd_mobility_draw(engine, &of_waves, engine_u.data());
@@ -275,8 +276,7 @@ void Noise::init(Hydrodynamics &hydro, const Ways &ways)
   refuse(hydro, ways);
   midpoint = ways.midpoint;
   const bool addition = hydro.settings.shells.on() && hydro.settings.shells.one_body;
-  const double positive = addition ? SD_EWALD_POSITIVE_ADDITION : SD_EWALD_POSITIVE;
-  hydro.scene.settings.positive = positive;
+  hydro.engine.far_field.positive = addition ? SD_EWALD_POSITIVE_ADDITION : SD_EWALD_POSITIVE;
   told_of_whole = false;
 }
 

@@ -44,6 +44,8 @@ class Shells : protected LAMMPS_NS::Pointers {
   {
   }
 
+  /* Otherwise spheres are points, and nobody asks for more. */
+  bool on() const { return settings.on(); }
   /* The settings are new. */
   void make();
 

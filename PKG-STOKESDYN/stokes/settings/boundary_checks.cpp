@@ -3,7 +3,6 @@
 #include "ambient.h"
 #include "fixes.h"
 #include "keywords.h"
-#include "scene.h"
 #include "settings.h"
 
 #include "domain.h"
@@ -88,7 +87,7 @@ static void check_sums(const Voice &voice, const StokesSettings &s)
   if (s.scene.tensor == SD_TENSOR_OSEEN)
     voice.fail("keyword tensor: 'oseen' with cut_off_distance inf requires a box that is not "
                "periodic");
-  if (s.scene.far_field == Scene::Settings::DIRECT)
+  if (s.scene.far_field == SceneSettings::DIRECT)
     voice.fail("keywords far_field direct and precondition sparse require a box that is not "
                "periodic: only Ewald sums go over all periodic images");
 }
@@ -132,7 +131,7 @@ static void check_stream(const Voice &voice, const sd_wall &wall, const Ambient:
 void find_boundary(const Voice &voice, StokesSettings &settings)
 {
   const Domain *domain = voice.lmp->domain;
-  Scene::Settings &scene = settings.scene;
+  SceneSettings &scene = settings.scene;
   Boundary &boundary = scene.boundary;
   const bool everybody = scene.everybody();
   int periodic = 0;

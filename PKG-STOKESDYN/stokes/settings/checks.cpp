@@ -1,5 +1,6 @@
 #include "checks.h"
 
+#include "engine.h"
 #include "fixes.h"
 #include "keywords.h"
 #include "neighbours_stokes.h"
@@ -71,20 +72,20 @@ void warn_of_one_molecule(const Voice &voice, const Scene &scene)
                ", and there are no films within a molecule: give free spheres the molecule ID 0");
 }
 
-void refuse_close_oseen(const Voice &voice, const Scene &scene)
+void refuse_close_oseen(const Voice &voice, const Scene &scene, const Engine &engine)
 {
   const Comm *comm = voice.lmp->comm;
-  const sd_law law = scene.law();
+  const sd_law law = scene.settings.law();
   double mine;
   sd_status status;
-  if (scene.view() == SD_VIEW_ALL) {
-    const sd_spheres spheres = scene.cloud.spheres();
-    const int64_t n = scene.cloud.size();
+  if (engine.view() == SD_VIEW_ALL) {
+    const sd_spheres spheres = engine.cloud.spheres();
+    const int64_t n = engine.cloud.size();
     const int from = n * comm->me / comm->nprocs, to = n * (comm->me + 1) / comm->nprocs;
     status = sd_oseen_coupling(&law, &spheres, nullptr, n, from, to - from, &mine);
   } else {
     const sd_spheres spheres = scene.local();
-    const sd_pairs *pairs = scene.settings.clumps_only ? &scene.list() : nullptr;
+    const sd_pairs *pairs = scene.settings.clumps_only ? &engine.list() : nullptr;
     status = sd_oseen_coupling(&law, &spheres, pairs, scene.size_with_copies(), 0, scene.size(),
                                &mine);
   }
@@ -97,7 +98,7 @@ void refuse_close_oseen(const Voice &voice, const Scene &scene)
                          " is " + text(largest) + " and must be below 1; use tensor rpy");
 }
 
-void warn_of_short_cutoff(const Voice &voice, const Scene &scene)
+void warn_of_short_cutoff(const Voice &voice, const Scene &scene, const Engine &engine)
 {
   struct Sight {
     tagint molecule;
@@ -110,7 +111,7 @@ void warn_of_short_cutoff(const Voice &voice, const Scene &scene)
     clump.spheres += part.spheres;
     clump.seen += part.seen;
   };
-  const sd_pairs &list = scene.list();
+  const sd_pairs &list = engine.list();
   for (int k = 0; k < scene.size(); k++)
     if (const tagint molecule = scene.molecule(k))
       add({molecule, 1, (bigint) (list.first[k + 1] - list.first[k])});

@@ -3,10 +3,13 @@
 #ifndef SD_CHECKS_H
 #define SD_CHECKS_H
 
-#include "scene.h"
+#include "pointers.h"
 
 namespace StokesDyn {
 
+class Engine;
+class Scene;
+class Voice;
 struct StokesSettings;
 
 /* The first call of BLAS in a process wants memory, and tries for ever where there is none. */
@@ -31,11 +34,11 @@ void warn_of_one_molecule(const Voice &voice, const Scene &scene);
 /* A cut-off that ends within a clump leaves out a part of it, and then its drag is too large: by 10
  * % for a chain of ten touching spheres that see each other up to 10.5 a. Tells of the clump with
  * the lowest molecule ID. */
-void warn_of_short_cutoff(const Voice &voice, const Scene &scene);
+void warn_of_short_cutoff(const Voice &voice, const Scene &scene, const Engine &engine);
 
 /* Tensor oseen: some velocities would have an answer all the same where spheres are too close, and
  * none of them means anything. */
-void refuse_close_oseen(const Voice &voice, const Scene &scene);
+void refuse_close_oseen(const Voice &voice, const Scene &scene, const Engine &engine);
 
 // --- motion without inertia: errors, that name the other command, and limits of the time step ----
 

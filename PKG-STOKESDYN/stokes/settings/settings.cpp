@@ -33,7 +33,7 @@ StokesSettings::StokesSettings(LAMMPS *lmp, const std::vector<std::string> &word
   scene.residual = tolerance;
   // What Ewald sums have not got.
   if (scene.tensor == SD_TENSOR_OSEEN || precondition == SPARSE)
-    scene.far_field = Scene::Settings::DIRECT;
+    scene.far_field = SceneSettings::DIRECT;
   // Points on a surface take torques, whether rotation is asked for or not.
   if (rigid.shell > 1 || shells.on()) scene.rotation = true;
   if (shells.on() && !in.given("lubrication_range")) lubrication.range = 1.0;
@@ -208,7 +208,7 @@ void StokesSettings::check_close_spheres(const Keywords &in, bool all_pairs) con
 /* Which keywords go together. */
 void StokesSettings::check(const Keywords &in) const
 {
-  const bool all_pairs = scene.everybody(), by_ewald = scene.far_field == Scene::Settings::EWALD;
+  const bool all_pairs = scene.everybody(), by_ewald = scene.far_field == SceneSettings::EWALD;
   in.require(in.given("visc"), "keyword visc is required: the dynamic viscosity");
   in.require(!ambient.grid_has_visc || !grid_file.empty(),
              "keyword visc: 'grid' requires fluid_velocity grid FILE");
@@ -225,7 +225,7 @@ void StokesSettings::check(const Keywords &in) const
   in.require(!in.given("far_field") || all_pairs,
              "keyword far_field requires cut_off_distance inf and clumps_only no");
   in.require(!in.given("far_field_tolerance") ||
-                 (all_pairs && scene.far_field != Scene::Settings::DIRECT),
+                 (all_pairs && scene.far_field != SceneSettings::DIRECT),
              "keyword far_field_tolerance requires cut_off_distance inf, clumps_only no, and "
              "far_field auto or ewald");
   in.require(!by_ewald || scene.tensor != SD_TENSOR_OSEEN,
@@ -262,7 +262,7 @@ void StokesSettings::check_with_walls(const Keywords &in)
   const bool torques = scene.rotation && !shells.on();
   in.require(scene.tensor != SD_TENSOR_OSEEN,
              "keyword wall is not available with tensor oseen: use tensor rpy");
-  in.require(scene.far_field != Scene::Settings::EWALD || !torques,
+  in.require(scene.far_field != SceneSettings::EWALD || !torques,
              "keyword wall: far_field ewald has no images of torques in a wall: use multiblob 12 in "
              "place of rotation yes, or far_field auto, which takes all pairs");
   in.require(precondition != WAVES,
@@ -273,7 +273,7 @@ void StokesSettings::check_with_walls(const Keywords &in)
   in.require(rigid.shell == 1,
              "keyword wall: a shell is computed once, without the wall: use multiblob 12 in its "
              "place");
-  if (torques) scene.far_field = Scene::Settings::DIRECT;
+  if (torques) scene.far_field = SceneSettings::DIRECT;
 }
 
 }    // namespace StokesDyn

@@ -5,7 +5,8 @@
 #include "ambient.h"
 #include "lubrication.h"
 #include "rigid_clumps.h"
-#include "scene.h"
+#include "scene_settings.h"
+#include "shells.h"
 
 #include <string>
 #include <vector>
@@ -35,7 +36,7 @@ struct StokesSettings {
   enum Precondition { AUTO, NONE, CLUMP, SPARSE, WAVES };
   Precondition precondition = AUTO;
   Ambient::Settings ambient;
-  Scene::Settings scene;
+  SceneSettings scene;
   RigidClumps::Settings rigid;
   Lubrication::Settings lubrication;
   Shells::Settings shells;

@@ -9,7 +9,6 @@
 #include "body_scene.h"
 #include "pointers.h"
 #include "rows_fix.h"
-#include "scene.h"
 
 #include <vector>
 
@@ -17,7 +16,7 @@ namespace StokesDyn {
 
 class FilmsFactor : protected LAMMPS_NS::Pointers {
  public:
-  FilmsFactor(LAMMPS_NS::LAMMPS *lmp, Scene &scene, BodyScene &bodies) :
+  FilmsFactor(LAMMPS_NS::LAMMPS *lmp, const Scene &scene, BodyScene &bodies) :
       Pointers(lmp), scene(scene), bodies(bodies)
   {
   }
@@ -31,7 +30,7 @@ class FilmsFactor : protected LAMMPS_NS::Pointers {
   void forget() { rows.never(); }
 
  private:
-  Scene &scene;
+  const Scene &scene;
   BodyScene &bodies;
   /* whose rows the factor is of */
   Stamp rows;

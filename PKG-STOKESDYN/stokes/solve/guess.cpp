@@ -17,9 +17,9 @@ namespace StokesDyn {
 
 using State = FixStokesDynamicsState;
 
-Guess::Guess(LAMMPS *lmp, Scene &scene, const BodyScene &bodies, const Shells &shells,
+Guess::Guess(LAMMPS *lmp, const Scene &scene, const Engine &engine, const BodyScene &bodies, const Shells &shells,
              const StokesSettings &settings) :
-    Pointers(lmp), scene(scene), bodies(bodies), shells(shells), settings(settings)
+    Pointers(lmp), scene(scene), engine(engine), bodies(bodies), shells(shells), settings(settings)
 {
 }
 
@@ -93,7 +93,7 @@ void Guess::keep(Question asked, const Found &found)
     keep_perturbation(found.exerted);
   else if (settings.lubrication.on)
     keep_motions(found.v, kept);
-  if (shells.settings.on() && scene.anybody_sees())
+  if (shells.settings.on() && engine.anybody_sees())
     keep_points(found.l, kept);
   else if (!shells.settings.on() && asked != FORCES)
     keep_spheres(found.l, kept);
@@ -126,7 +126,7 @@ void Guess::keep_perturbation(const std::vector<double> &exerted)
   const size_t m = width();
   std::vector<double> perturbed(m * scene.size() + m, 0.0);
   for (size_t k = 0; k < (size_t) scene.size(); k++)
-    if (!scene.alone((int) k))
+    if (!engine.alone((int) k))
       sd_guess_perturbation(m, &bodies.resistance[m * k], &bodies.flow[m * k], &exerted[m * k], &perturbed[m * k]);
   scene.to_atoms((int) m, perturbed.data(), [&](int i, const double *now) {
     double *row = memory->rows.writable(i), *before = row + memory->before();

@@ -41,7 +41,8 @@ class Guess : protected LAMMPS_NS::Pointers {
     const std::vector<double> &l, &v, &exerted;
   };
 
-  Guess(LAMMPS_NS::LAMMPS *lmp, Scene &, const BodyScene &, const Shells &, const StokesSettings &);
+  Guess(LAMMPS_NS::LAMMPS *lmp, const Scene &, const Engine &, const BodyScene &, const Shells &,
+        const StokesSettings &);
   /* that of the step: Hydrodynamics::begin */
   FixStokesDynamicsState *memory = nullptr;
 
@@ -59,7 +60,8 @@ class Guess : protected LAMMPS_NS::Pointers {
   std::vector<double> points_of_last_solve() const { return recall_points(0.0); }
 
  private:
-  Scene &scene;
+  const Scene &scene;
+  const Engine &engine;
   const BodyScene &bodies;
   const Shells &shells;
   const StokesSettings &settings;

@@ -26,12 +26,11 @@ static const double LOOSE = 1e-3;
 
 Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
     Pointers(lmp), voice(lmp, StokesSettings::COMMAND), ambient(voice, epochs, settings.ambient),
-    scene(voice, epochs, settings.scene), shells(voice, settings.shells),
-    rigid(voice, scene.whole, epochs, settings.rigid),
-    lubrication(voice, settings.lubrication, settings.shells),
-    clump_poses(lmp, scene, ambient, rigid, given),
-    bodies(voice, scene, ambient, rigid, clump_poses, given, lubrication),
-    solver(lmp, scene, bodies, ambient, shells, settings), guard(voice)
+    scene(voice, epochs, settings.scene), shells(voice, settings.shells), engine(voice, scene, shells),
+    rigid(voice, scene.whole, epochs, settings.rigid), lubrication(voice, settings.lubrication, shells),
+    clump_poses(lmp, scene.whole, epochs, ambient, rigid, given),
+    bodies(voice, scene, engine, shells, ambient, clump_poses, lubrication),
+    solver(lmp, scene, engine, bodies, shells, settings), guard(voice)
 {
 }
 
@@ -45,15 +44,8 @@ Hydrodynamics *Hydrodynamics::of(LAMMPS *lmp)
 void Hydrodynamics::set(const std::vector<std::string> &words)
 {
   settings = StokesSettings(lmp, words);
-  if (settings.shells.on()) check_room_of_blas(voice);
+  if (shells.on()) check_room_of_blas(voice);
   shells.make();
-  scene.shells = settings.shells.on() ? &shells : nullptr;
-  scene.fit = [this] {
-    fit_shells();
-  };
-  scene.orient = [this] {
-    bodies.orient();
-  };
   advance();
   rigid.forget();
   solver.preconditioner.forget();
@@ -64,7 +56,7 @@ void Hydrodynamics::set(const std::vector<std::string> &words)
 void Hydrodynamics::init()
 {
   ambient.init();
-  scene.settings.positive = 0.0;
+  engine.far_field.positive = 0.0;
   given.clear();    // it asks a fix that may be gone
   advance();
   prepared.set(epochs.run);
@@ -100,7 +92,7 @@ void Hydrodynamics::begin(Moment moment)
   }
   given.clear();
   given.velocities = !overdamped;
-  const Ambient::Derivatives wanted = shells.settings.on() ? Ambient::SECOND
+  const Ambient::Derivatives wanted = shells.on() ? Ambient::SECOND
       : settings.rigid.on                                  ? Ambient::FIRST
                                                            : Ambient::NO_DERIVATIVES;
   ambient.read(rotation(), wanted, memory->time(), moment == HALF_LATER ? 0.5 : 0.0);
@@ -108,6 +100,17 @@ void Hydrodynamics::begin(Moment moment)
   if (!cleared.first_in(epochs.selection)) return;
   for (int i = 0; i < atom->nlocal; i++)
     if (!ambient.active()[i]) memory->erase(i);
+}
+
+/* The rows of this step's spheres where they stand now, and their shells with them */
+void Hydrodynamics::stand()
+{
+  scene.stand(solved_atoms, ambient);
+  rows_stand.set(epochs.step);
+  if (!shells.on()) return;
+  fit_shells();
+  shells.free_rows(scene.size(), scene.local().a);
+  bodies.orient();
 }
 
 /* Which shells the spheres have: as the run began, or the one that a restart file goes on with. */
@@ -191,7 +194,7 @@ void Hydrodynamics::solve()
   place();
   bodies.place(width());
   sd_solve_report report = {};
-  const sd_status status = scene.anybody_sees() ? find_forces(report) : SD_OK;
+  const sd_status status = engine.anybody_sees() ? find_forces(report) : SD_OK;
   account_for(status, report);
   solver.keep(Guess::FORCES);
 }
@@ -230,21 +233,22 @@ void Hydrodynamics::look_at_wall()
 /* The spheres of this solve, and what may be wrong with how they stand. */
 void Hydrodynamics::place()
 {
-  const Scene::Settings &how = settings.scene;
-  scene.set_open_box(memory->global.open_box);
-  scene.update(solved_atoms, ambient, solver.idle());
-  rows_stand.set(epochs.step);
+  const SceneSettings &how = settings.scene;
+  FarField &far_field = engine.far_field;
+  far_field.set_open_box(memory->global.open_box);
+  stand();
+  engine.place(solver.idle());
   look_at_wall();
-  memory->global.open_box = scene.open_box();
+  memory->global.open_box = far_field.open_box();
   const bool first = looked.first_in(epochs.run);
-  if (scene.view() == SD_VIEW_NEAR && first) warn_of_misfit(voice, ambient.misfit());
+  if (engine.view() == SD_VIEW_NEAR && first) warn_of_misfit(voice, ambient.misfit());
   if (first) check_stream_at_walls(voice, how.boundary, ambient, settings.lubrication.on);
-  if (settings.lubrication.on && !shells.settings.on() && first)
+  if (settings.lubrication.on && !shells.on() && first)
     warn_of_shared_films(voice, sum_of_all(world, (double) scene.size()));
   if (settings.lubrication.on && !settings.rigid.on && first) warn_of_one_molecule(voice, scene);
-  if (how.tensor == SD_TENSOR_OSEEN) refuse_close_oseen(voice, scene);
+  if (how.tensor == SD_TENSOR_OSEEN) refuse_close_oseen(voice, scene, engine);
   if (first && how.clumps_only && std::isfinite(how.cutoff) && how.taper == SD_TAPER_NONE)
-    warn_of_short_cutoff(voice, scene);
+    warn_of_short_cutoff(voice, scene, engine);
 }
 
 Voice Hydrodynamics::where(int algorithm) const
@@ -280,7 +284,7 @@ sd_status Hydrodynamics::find_forces(sd_solve_report &report)
   if (bodies.joined()) bodies.assemble();
   const sd_status status = bodies.joined() ? solver.run(how, report) : solver.gradients(how, report);
   fail_if_alone(where(StokesSettings::GRADIENTS), status);
-  if (!shells.settings.on() || status == SD_OK)
+  if (!shells.on() || status == SD_OK)
     look_at_step(report, bodies.joined() || solver.preconditioner.attached());
   return status;
 }
@@ -317,7 +321,7 @@ void Hydrodynamics::look_at_step(const sd_solve_report &report, bool preconditio
   const auto resist = [this](const double *v, double *Rv) {
     return solver.resist(v, settings.max_iter, Rv);
   };
-  if (shells.settings.on())
+  if (shells.on())
     guard.look_at_shells(system, resist, scene, memory->global.solves);
   else
     guard.look(system, report, scene, preconditioned, memory->global.solves);
@@ -352,7 +356,7 @@ void Hydrodynamics::unconverged(sd_status status, const sd_solve_report &report)
 /* Ends the run. */
 void Hydrodynamics::failed(sd_status status, const sd_solve_report &report) const
 {
-  const Scene::Settings &how = settings.scene;
+  const SceneSettings &how = settings.scene;
   std::string why = sd_status_string(status), numbers = how_far(report);
   if (status == SD_EDIVERGED)
     why = "diverged, the residual growing by a factor " + text(report.growth) +
@@ -360,7 +364,7 @@ void Hydrodynamics::failed(sd_status status, const sd_solve_report &report) cons
   if (status == SD_EINDEFINITE) numbers += ", curvature " + text(report.curvature);
   if (how.tensor == SD_TENSOR_OSEEN && (status == SD_EINDEFINITE || status == SD_ESINGULAR))
     why += " with tensor oseen: spheres are too close for it, use tensor rpy";
-  else if (status == SD_EINDEFINITE && shells.settings.on() && shells.settings.one_body)
+  else if (status == SD_EINDEFINITE && shells.on() && shells.settings.one_body)
     why += " with the one-body addition of multiblob: use one_body no";
   else if (status == SD_ESINGULAR)
     why += ": equal spheres at one point with different velocities";
@@ -388,7 +392,7 @@ double Hydrodynamics::dissipation(int i) const
 double Hydrodynamics::memory_usage() const
 {
   const double films = films_v.capacity() + films_F.capacity() + films_power.capacity();
-  return ambient.memory_usage() + scene.memory_usage() + shells.memory_usage() +
+  return ambient.memory_usage() + scene.memory_usage() + engine.memory_usage() + shells.memory_usage() +
       rigid.memory_usage() + lubrication.memory_usage() + clump_poses.memory_usage() +
       bodies.memory_usage() + solver.memory_usage() + sizeof(double) * films;
 }

@@ -18,6 +18,7 @@
 #include "fix_stokes_dynamics_state.h"
 #include "lubrication.h"
 #include "rigid_clumps.h"
+#include "engine.h"
 #include "scene.h"
 #include "settings.h"
 #include "solve.h"
@@ -48,6 +49,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Epochs epochs;
   Ambient ambient;
   Scene scene;
+  Shells shells;
+  Engine engine;
   /* Does a fix report v'? For rigid clumps it is computed only then. */
   bool reports_perturbation = false;
   /* Does fix stokes_dynamics/overdamped find the velocities? Then the pair style does nothing. */
@@ -145,7 +148,6 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
 
  private:
   Given given;
-  Shells shells;
   RigidClumps rigid;
   Lubrication lubrication;
   ClumpPoses clump_poses;
@@ -177,8 +179,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   void advance();
   void place();
   void look_at_wall();
+  void stand();
   void stand_rows();
-  void surround();
   void read_motion();
   void place_films();
   void lubricate();

@@ -45,15 +45,7 @@ void Hydrodynamics::stand_rows()
   if (standing()) return;
   solved_atoms = ambient.who();
   if (settings.rigid.on) clump_poses.find();
-  surround();
-}
-
-void Hydrodynamics::surround()
-{
-  if (standing()) return;
-  scene.stand(solved_atoms, ambient);
-  scene.turn_shells();
-  rows_stand.set(epochs.step);
+  stand();
 }
 
 /* As the spheres move now, by rows of the scene */
@@ -69,7 +61,7 @@ void Hydrodynamics::read_motion()
 /* Where the spheres stand and as they move now */
 void Hydrodynamics::place_films()
 {
-  surround();
+  if (!standing()) stand();
   read_motion();
   lubrication.place(scene, &ambient);
 }

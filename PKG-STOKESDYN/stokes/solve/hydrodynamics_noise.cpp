@@ -66,7 +66,7 @@ void Hydrodynamics::difference(const Given &known, double sign)
   given = known;
   assemble();
   solver.difference(sign);
-  if (shells.settings.on()) add_moments_left(sign * solver.part());
+  if (shells.on()) add_moments_left(sign * solver.part());
 }
 
 /* Of bodies that turn the mean of first moments Q^T l lacks kT sum_k (d_k Q)^T A_k, as slip and load do. */
@@ -89,7 +89,8 @@ void Hydrodynamics::films(const Given &known)
   if (!settings.lubrication.on) return;
   given = known;
   clump_poses.find();
-  bodies.stand_films(solved_atoms);
+  stand();
+  bodies.stand_films();
 }
 
 }    // namespace StokesDyn

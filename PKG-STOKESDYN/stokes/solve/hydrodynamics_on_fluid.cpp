@@ -104,7 +104,7 @@ FlowSources Hydrodynamics::of_points_on_fluid()
 
 FlowSources Hydrodynamics::on_fluid()
 {
-  if (shells.settings.on()) return of_points_on_fluid();
+  if (shells.on()) return of_points_on_fluid();
   const bool without_films = settings.lubrication.on && !overdamped;
   const int m = width();
   FlowSources all;

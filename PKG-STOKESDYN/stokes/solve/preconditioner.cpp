@@ -23,12 +23,12 @@ static const int FEW = 200;
 /* The rule, which the page has too. */
 const sd_precondition_kind *Preconditioner::suited() const
 {
-  const bool periodic = scene.splitting() && scene.splitting()->box.periodic;
+  const bool periodic = engine.splitting() && engine.splitting()->box.periodic;
   Kind that = kind;
   if (kind == Settings::AUTO) {
     if (periodic)
       that = Settings::WAVES;
-    else if (scene.view() == SD_VIEW_ALL)
+    else if (engine.view() == SD_VIEW_ALL)
       that = !few() ? Settings::SPARSE : easy ? Settings::NONE : Settings::CLUMP;
     else
       that = atom->molecule ? Settings::CLUMP : Settings::NONE;
@@ -52,8 +52,8 @@ bool Preconditioner::few() const
 
 void Preconditioner::attach(sd_system &system, AtomRows &at, std::vector<double> &its_box)
 {
-  cloud = scene.view() == SD_VIEW_ALL;
-  n = cloud ? scene.cloud.size() : scene.size();
+  cloud = engine.view() == SD_VIEW_ALL;
+  n = cloud ? engine.cloud.size() : scene.size();
   width = system.spin ? 6 : 3;
   put_in.never();
   places = &at;
@@ -94,7 +94,7 @@ void Preconditioner::find_positions()
       scene.rows(3, [this](int i, double *out) { std::copy_n((*places)[i], 3, out); });
   x.resize(3 * (size_t) n + 3);
   if (cloud)
-    scene.cloud.to_all(rows.data(), x.data(), 3);
+    engine.cloud.to_all(rows.data(), x.data(), 3);
   else
     x.swap(rows);
 }
@@ -116,7 +116,7 @@ void Preconditioner::group_by_molecule()
 {
   std::map<int64_t, std::vector<int>> clumps;
   for (int i = 0; i < n && atom->molecule; i++) {
-    const int64_t molecule = cloud ? scene.cloud.molecules()[i] : scene.molecule(i);
+    const int64_t molecule = cloud ? engine.cloud.molecules()[i] : scene.molecule(i);
     if (molecule != 0 && spheres().a[i] > 0.0) clumps[molecule].push_back(i);
   }
   for (const auto &clump : clumps) {
@@ -158,17 +158,17 @@ sd_status Preconditioner::put()
   group();
   if (!cloud) put_side_by_side();
   sd_precondition_case c = {};
-  c.law = scene.law();
+  c.law = scene.settings.law();
   c.spheres = {x.data(), spheres().a, spheres().w};
   c.n = n;
   c.width = width;
   c.clumps = first.size() - 1;
   c.first = first.data();
   c.member = member.data();
-  if (wanted == &sd_precondition_waves) c.box = &scene.splitting()->box;
+  if (wanted == &sd_precondition_waves) c.box = &engine.splitting()->box;
   c.part = cloud ? comm->me : 0;
   c.parts = cloud ? comm->nprocs : 1;
-  c.world = scene.ranks();
+  c.world = engine.ranks();
   return sd_preconditioner_make(&made, wanted, &c);
 }
 
@@ -185,13 +185,13 @@ sd_status Preconditioner::apply(void *ctx, const double *r, double *z)
     p->in.resize(width * p->n + 1);
     p->out.resize(width * p->n + 1);
     if (p->cloud)
-      p->scene.cloud.to_all(r, p->in.data(), width);
+      p->engine.cloud.to_all(r, p->in.data(), width);
     else
       std::copy_n(r, own, p->in.begin());
     const sd_status status =
         sd_preconditioner_apply(&p->made, p->spheres().w, p->in.data(), p->out.data());
     if (p->cloud)
-      p->scene.cloud.to_own(p->out.data(), z, width);
+      p->engine.cloud.to_own(p->out.data(), z, width);
     else
       std::copy_n(p->out.begin(), own, z);
     return status;

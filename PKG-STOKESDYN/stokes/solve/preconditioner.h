@@ -12,8 +12,9 @@
 #ifndef SD_PRECONDITIONER_GLUE_H
 #define SD_PRECONDITIONER_GLUE_H
 
-#include "rows_fix.h"
+#include "engine.h"
 #include "pointers.h"
+#include "rows_fix.h"
 #include "scene.h"
 #include "settings.h"
 
@@ -31,10 +32,13 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   /* Do solves begin near to what is good enough, from the last ones to a loose tolerance? */
   bool easy = false;
 
-  Preconditioner(LAMMPS_NS::LAMMPS *lmp, Scene &scene) : Pointers(lmp), scene(scene) {}
+  Preconditioner(LAMMPS_NS::LAMMPS *lmp, const Scene &scene, Engine &engine) :
+      Pointers(lmp), scene(scene), engine(engine)
+  {
+  }
 
   void forget() { sd_preconditioner_free(&made); }
-  /* Before a solve, after Scene::update(): puts the one that suits the scene into the system. It is
+  /* Before a solve, after Engine::place(): puts the one that suits the scene into the system. It is
    * made at its first use, since a warm start often needs none at all. places: 3 numbers of an
    * atom, where it stood when it was made; box: of then. Both are the caller's to keep. */
   void attach(sd_system &system, AtomRows &places, std::vector<double> &box);
@@ -42,7 +46,8 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   double memory_usage() const;
 
  private:
-  Scene &scene;
+  const Scene &scene;
+  Engine &engine;
   const sd_precondition_kind *wanted = nullptr;    // nullptr: none
   Owned<sd_preconditioner, sd_preconditioner_free> made;
 
@@ -60,7 +65,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   const sd_precondition_kind *suited() const;
   /* so few spheres that the inverse of the whole cloud's matrix is made, one block? */
   bool few() const;
-  sd_spheres spheres() const { return cloud ? scene.cloud.spheres() : scene.local(); }
+  sd_spheres spheres() const { return cloud ? engine.cloud.spheres() : scene.local(); }
   void refresh_places();
   void find_positions();
   void group();

@@ -10,10 +10,10 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-Solve::Solve(LAMMPS *lmp, Scene &scene, BodyScene &bodies, const Ambient &ambient, const Shells &shells,
+Solve::Solve(LAMMPS *lmp, const Scene &scene, Engine &engine, BodyScene &bodies, const Shells &shells,
              const StokesSettings &settings) :
-    Pointers(lmp), preconditioner(lmp, scene), guess(lmp, scene, bodies, shells, settings), scene(scene),
-    bodies(bodies), ambient(ambient), factor(lmp, scene, bodies)
+    Pointers(lmp), preconditioner(lmp, scene, engine), guess(lmp, scene, engine, bodies, shells, settings),
+    scene(scene), engine(engine), bodies(bodies), shells(shells), settings(settings), factor(lmp, scene, bodies)
 {
 }
 
@@ -112,8 +112,8 @@ sd_system Solve::system()
   system.drag = drag.data();
   system.spin = m == 6 ? spin.data() : nullptr;
   system.apply = sd_mobility_apply;
-  system.apply_ctx = scene.mobility();
-  system.world = scene.ranks();
+  system.apply_ctx = engine.mobility();
+  system.world = engine.ranks();
   return system;
 }
 

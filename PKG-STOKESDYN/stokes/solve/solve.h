@@ -12,7 +12,6 @@
 
 #include "body_noise.h"
 #include "body_scene.h"
-#include "callback.h"
 #include "films_factor.h"
 #include "guess.h"
 #include "pointers.h"
@@ -32,8 +31,7 @@ namespace StokesDyn {
 
 class Solve : protected LAMMPS_NS::Pointers {
  public:
-  Solve(LAMMPS_NS::LAMMPS *lmp, Scene &, BodyScene &, const Ambient &, const Shells &,
-        const StokesSettings &);
+  Solve(LAMMPS_NS::LAMMPS *lmp, const Scene &, Engine &, BodyScene &, const Shells &, const StokesSettings &);
   Preconditioner preconditioner;
   Guess guess;
 
@@ -113,9 +111,11 @@ class Solve : protected LAMMPS_NS::Pointers {
   double memory_usage() const;
 
  private:
-  Scene &scene;
+  const Scene &scene;
+  Engine &engine;
   BodyScene &bodies;
-  const Ambient &ambient;
+  const Shells &shells;
+  const StokesSettings &settings;
   FilmsFactor factor;
   Stamp found;
 

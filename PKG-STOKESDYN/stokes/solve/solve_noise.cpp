@@ -18,7 +18,7 @@ std::vector<double> Solve::numbers(const sd_random_key &of_spheres) const
   std::vector<double> w(sd_bodies_unknowns(&bodies.bodies) + 1);
   double *next = w.data();
   for (size_t k = 0; k < (size_t) scene.size(); k++) {
-    const int m = scene.shells ? 3 * scene.shells->points_of_row(k) : bodies.width;
+    const int m = shells.on() ? 3 * shells.points_of_row(k) : bodies.width;
     sd_random_normals(&of_spheres, scene.tag((int) k), m, next);
     next += m;
   }
@@ -35,7 +35,7 @@ void Solve::draw_slip(const Draw &draw)
   const std::vector<double> w = numbers(draw.of_spheres);
   std::vector<double> waves(rows + 1);
   slip.assign(rows + 6, 0.0);
-  bool divided = scene.anybody_sees() && sd_mobility_divides(scene.mobility());
+  bool divided = engine.anybody_sees() && sd_mobility_divides(engine.mobility());
   sd_noise_report report = {};
   sd_status status = SD_OK;
   const auto process = [&](const sd_bodies &matrix, const sd_ewald *split) {
@@ -44,14 +44,14 @@ void Solve::draw_slip(const Draw &draw)
     status = sd_bodies_draw(draw.noise, &matrix, &blocks, w.data(), draw.tolerance, slip.data(), &report);
   };
   if (divided) {
-    process(bodies.undrawn(), scene.splitting());
+    process(bodies.undrawn(), engine.splitting());
     if (status == SD_EINDEFINITE) {
       divided = false;
       draw.not_positive();
     }
   }
   if (!divided) process(A, nullptr);
-  if (status == SD_OK && divided) status = sd_mobility_draw(scene.mobility(), &draw.of_waves, waves.data());
+  if (status == SD_OK && divided) status = sd_mobility_draw(engine.mobility(), &draw.of_waves, waves.data());
   draw.report(status, report, divided);
   sd_noise_join((long) rows, draw.scale, divided ? waves.data() : nullptr, slip.data());
 }
@@ -64,7 +64,7 @@ void Solve::find_followers()
   const Voice voice(lmp, StokesSettings::COMMAND);
   follow.assign(all.size() + 1, nullptr);
   double left = scene.settings.boundary.walled() || domain->dimension == 2 ||
-      ambient.settings.visc.is_atom_style() || ambient.settings.grid_has_visc;
+      settings.ambient.visc.is_atom_style() || settings.ambient.grid_has_visc;
   for (size_t b = 0; b < all.size(); b++) {
     const int number = bodies.bodies.lone + (int) b;
     follow[b] = shapes.follow(voice, all[b]);

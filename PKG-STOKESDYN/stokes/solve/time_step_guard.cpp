@@ -2,6 +2,7 @@
 
 #include "callback.h"
 #include "keywords.h"
+#include "scene.h"
 #include "scene_at_boundary.h"
 
 #include "atom.h"
@@ -43,7 +44,7 @@ std::vector<char> TimeStepGuard::held_atoms() const
 }
 
 /* In the units of this LAMMPS */
-std::vector<double> TimeStepGuard::inertia(Scene &scene) const
+std::vector<double> TimeStepGuard::inertia(const Scene &scene) const
 {
   const std::vector<char> held = held_atoms();
   return scene.rows(3, [&](int i, double *out) {
@@ -54,7 +55,7 @@ std::vector<double> TimeStepGuard::inertia(Scene &scene) const
   });
 }
 
-TimeStepGuard::Times TimeStepGuard::weigh(const sd_system &A, Scene &scene,
+TimeStepGuard::Times TimeStepGuard::weigh(const sd_system &A, const Scene &scene,
                                           std::vector<double> *weight)
 {
   const std::vector<double> W = inertia(scene);
@@ -98,7 +99,7 @@ static double random_number(const Scene &scene, size_t k, size_t d)
  * preconditioned by W have the eigenvalues of W M as their Ritz values, and a slip of random
  * numbers, with a share of every eigenvector, shows the smallest. The numbers depend on the sphere
  * alone, so that the ranks do not matter. */
-double TimeStepGuard::compute(const sd_system &A, Scene &scene)
+double TimeStepGuard::compute(const sd_system &A, const Scene &scene)
 {
   const size_t m = A.spin ? 6 : 3;
   std::vector<double> weight;
@@ -135,7 +136,7 @@ void TimeStepGuard::compare(double of_velocity)
  * Both may be many times too large, as a smooth right-hand side, a loose tolerance or a
  * preconditioner hides the smallest eigenvalue. So they are the limit only where it is far; where
  * it may be near it is computed. */
-void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report, Scene &scene,
+void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report, const Scene &scene,
                          bool preconditioned, double solves)
 {
   if (report.iterations == 0) return;
@@ -150,7 +151,7 @@ void TimeStepGuard::look(const sd_system &system, const sd_solve_report &report,
 }
 
 /* By the bounds from lambda, and mu in units of the shortest time where it may be near */
-void TimeStepGuard::conclude(const sd_system &system, Scene &scene, double lambda, double solves,
+void TimeStepGuard::conclude(const sd_system &system, const Scene &scene, double lambda, double solves,
                              const std::function<double()> &compute_mu)
 {
   const Times tau = weigh(system, scene, nullptr);
@@ -178,7 +179,7 @@ static sd_status resisted(void *ctx, const double *v, double *Rv)
 }
 
 /* 1/mu is the fastest rate, from random numbers. */
-double TimeStepGuard::compute_of_shells(const sd_system &A, const Resist &resist, Scene &scene)
+double TimeStepGuard::compute_of_shells(const sd_system &A, const Resist &resist, const Scene &scene)
 {
   const size_t m = 6 * (size_t) A.n;
   std::vector<double> weight, v(m + 6), Rv(m + 6);
@@ -192,7 +193,7 @@ double TimeStepGuard::compute_of_shells(const sd_system &A, const Resist &resist
   return status == SD_OK && rate > 0.0 ? 1.0 / rate : INFINITY;
 }
 
-void TimeStepGuard::look_at_shells(const sd_system &system, const Resist &resist, Scene &scene,
+void TimeStepGuard::look_at_shells(const sd_system &system, const Resist &resist, const Scene &scene,
                                    double solves)
 {
   if (solves < state.due && state.limit > 0.0) return;
@@ -200,7 +201,7 @@ void TimeStepGuard::look_at_shells(const sd_system &system, const Resist &resist
 }
 
 /* Beside films the drag is nothing, so that the limit is 2 over their fastest rate. */
-void TimeStepGuard::look_at_films(sd_lubrication &near, Scene &scene)
+void TimeStepGuard::look_at_films(sd_lubrication &near, const Scene &scene)
 {
   const std::vector<double> of_rows = inertia(scene);
   std::vector<double> W(6 * (size_t) near.n + 6), v(W.size()), work(W.size());

@@ -22,8 +22,8 @@
 #ifndef SD_TIME_STEP_GUARD_H
 #define SD_TIME_STEP_GUARD_H
 
+#include "keywords.h"
 #include "pointers.h"
-#include "scene.h"
 
 #include "sd_lubrication.h"
 #include "sd_solve.h"
@@ -32,6 +32,8 @@
 #include <vector>
 
 namespace StokesDyn {
+
+class Scene;
 
 class TimeStepGuard : protected LAMMPS_NS::Pointers {
  public:
@@ -50,17 +52,17 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
 
   /* After solve number `solves`, of conjugate gradients, by the rows of the scene: looks at the time
    * step, and warns once if it is too long. */
-  void look(const sd_system &system, const sd_solve_report &report, Scene &scene,
+  void look(const sd_system &system, const sd_solve_report &report, const Scene &scene,
             bool preconditioned, double solves);
 
   /* R v of spheres whose resistance is a solve of its own, [6 n] in and out: shells of points */
   using Resist = std::function<sd_status(const double *v, double *Rv)>;
   /* The same of those; system: the drags of spheres alone */
-  void look_at_shells(const sd_system &system, const Resist &resist, Scene &scene, double solves);
+  void look_at_shells(const sd_system &system, const Resist &resist, const Scene &scene, double solves);
 
   /* Lubrication has a limit of its own, told once a run: the spheres where they stand now, rows as
    * in look(). Warns once if the time step is above it. */
-  void look_at_films(sd_lubrication &near, Scene &scene);
+  void look_at_films(sd_lubrication &near, const Scene &scene);
 
  private:
   const Voice voice;
@@ -73,13 +75,13 @@ class TimeStepGuard : protected LAMMPS_NS::Pointers {
   struct Times {
     double shortest, of_velocity, longest;
   };
-  Times weigh(const sd_system &system, Scene &scene, std::vector<double> *weight);
+  Times weigh(const sd_system &system, const Scene &scene, std::vector<double> *weight);
   std::vector<char> held_atoms() const;
   /* by rows, three each: force over acceleration of velocity and of spin, is it held? */
-  std::vector<double> inertia(Scene &scene) const;
-  double compute(const sd_system &system, Scene &scene);
-  double compute_of_shells(const sd_system &system, const Resist &resist, Scene &scene);
-  void conclude(const sd_system &system, Scene &scene, double lambda, double solves,
+  std::vector<double> inertia(const Scene &scene) const;
+  double compute(const sd_system &system, const Scene &scene);
+  double compute_of_shells(const sd_system &system, const Resist &resist, const Scene &scene);
+  void conclude(const sd_system &system, const Scene &scene, double lambda, double solves,
                 const std::function<double()> &compute_mu);
   void compare(double of_velocity);
 };

@@ -57,7 +57,7 @@ def test_who_asks_the_boundary_stands_in_the_map():
     asks -= {"boundary", "boundary_checks", "scene_at_boundary"}
     listed = re.search(r"\n\* \*\*Walls\.\*\*(.*?)\n\* ", (TOP / "PKG-STOKESDYN" / "README.md").read_text(),
                        re.S).group(1)
-    assert "scene" in asks
+    assert "engine" in asks
     assert not [name for name in sorted(asks) if f"`{name}`" not in listed]
 
 

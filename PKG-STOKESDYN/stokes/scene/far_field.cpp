@@ -1,8 +1,10 @@
-/* The scene of Ewald sums: the box, how the sum is split, and whether that pays. */
-#include "scene.h"
+#include "far_field.h"
 
-#include "keywords.h"
+#include "lattice.h"
+#include "ranks.h"
+#include "scene.h"
 #include "scene_at_boundary.h"
+#include "shells.h"
 
 #include "sd_ewald_cost.h"
 
@@ -24,40 +26,60 @@ static const double MOST_IMAGES = 1e8, MOST_OF_EACH = 1e5;
 // Residual down to which a solve goes with products of floats: a hundred times their rounding, and more.
 static const double FLOATS_SOLVE_TO = 0.99e-4;
 
-/* Noise, too, asks for more digits than the tolerance says: a root goes on where a solve has ended. */
-double Scene::harmless_error() const
+FarField::FarField(const Voice &voice, const Scene &scene, const Shells &shells) :
+    Pointers(voice.lmp), voice(voice), scene(scene), shells(shells), settings(scene.settings)
 {
-  return settings.residual < FLOATS_SOLVE_TO || settings.positive > 0.0 ? 0.0 : settings.far_field_tolerance;
+}
+
+sd_mobility_how FarField::how() const
+{
+  return {settings.law(), width(), &ewald, &second_level, &slab, harmless_error()};
+}
+
+double FarField::reach() const
+{
+  return ewald.reach + 2.0 * extent(scene.largest());
+}
+
+int FarField::width() const
+{
+  return settings.rotation && !shells.on() ? 6 : 3;
+}
+
+double FarField::extent(double a) const
+{
+  return shells.on() ? shells.extent(a) : 0.0;
+}
+
+double FarField::grain(double a) const
+{
+  return shells.on() ? shells.grain(a) : a;
+}
+
+/* Noise, too, asks for more digits than the tolerance says: a root goes on where a solve has ended. */
+double FarField::harmless_error() const
+{
+  return settings.residual < FLOATS_SOLVE_TO || positive > 0.0 ? 0.0 : settings.far_field_tolerance;
 }
 
 /* Noise is drawn for points: there is no mean over those of a sphere. */
-double Scene::tolerance_of_sums() const
+double FarField::tolerance_of_sums() const
 {
-  return settings.far_field_tolerance * (shells && settings.positive == 0.0 ? shells->looser() : 1.0);
+  return settings.far_field_tolerance * (shells.on() && positive == 0.0 ? shells.looser() : 1.0);
 }
 
-sd_ewald_box Scene::lattice_box(const Domain *domain)
-{
-  const Lattice lattice = Lattice::of(domain);
-  sd_ewald_box box = {};
-  box.periodic = domain->xperiodic;
-  std::copy_n(lattice.origin, 3, box.origin);
-  std::copy_n(lattice.h, 3, box.edge);
-  for (int d = 0; d < 3; d++) box.tilt[d] = lattice.h[5 - d];    // xy xz yz
-  return box;
-}
-
-bool Scene::periodic() const
+bool FarField::periodic() const
 {
   return domain->xperiodic && domain->yperiodic && domain->zperiodic;
 }
 
 /* How many of which size there are on all ranks. */
-sd_ewald_sizes Scene::sizes_of_all(double largest) const
+sd_ewald_sizes FarField::sizes_of_all(double largest) const
 {
   sd_ewald_sizes s = {};
   s.all.largest = largest;
-  for (int k = 0; k < size(); k++) sd_ewald_count(&s, grain(a[k]), points(a[k]));
+  const double *a = scene.local().a;
+  for (int k = 0; k < scene.size(); k++) sd_ewald_count(&s, grain(a[k]), shells.on() ? shells.points(a[k]) : 1);
   static_assert(sizeof(s) == (1 + SD_EWALD_OCTAVES) * 4 * sizeof(double), "numbers alone");
   const int numbers = sizeof(s) / sizeof(double);
   sd_ewald_sizes most = s;
@@ -70,20 +92,22 @@ sd_ewald_sizes Scene::sizes_of_all(double largest) const
 
 /* The spheres of all ranks, and the box that they are summed in: LAMMPS's if it is periodic, else
  * one around them, which goes along with them. */
-sd_ewald_sizes Scene::measure(sd_ewald_box &box) const
+sd_ewald_sizes FarField::measure(sd_ewald_box &box) const
 {
+  const sd_spheres s = scene.local();
   double most[7] = {0.0, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY};
-  for (int k = 0; k < size(); k++) {
-    most[0] = std::max(most[0], grain(a[k]));
+  for (int k = 0; k < scene.size(); k++) {
+    const double outside = extent(s.a[k]);
+    most[0] = std::max(most[0], grain(s.a[k]));
     for (int d = 0; d < 3; d++) {
-      most[1 + d] = std::max(most[1 + d], extent(a[k]) - x[3 * k + d]);
-      most[4 + d] = std::max(most[4 + d], extent(a[k]) + x[3 * k + d]);
+      most[1 + d] = std::max(most[1 + d], outside - s.x[3 * k + d]);
+      most[4 + d] = std::max(most[4 + d], outside + s.x[3 * k + d]);
     }
   }
   MPI_Allreduce(MPI_IN_PLACE, most, 7, MPI_DOUBLE, MPI_MAX, world);
   const sd_ewald_sizes all = sizes_of_all(most[0]);
   if (periodic())
-    box = lattice_box(domain);
+    box = Lattice::of(domain).ewald_box();
   else if (all.all.count > 0.0) {
     double lo[3], hi[3];
     for (int d = 0; d < 3; d++) {
@@ -98,15 +122,15 @@ sd_ewald_sizes Scene::measure(sd_ewald_box &box) const
 }
 
 /* How the sum is split, of spheres that there are, in a box that is periodic or open */
-sd_status Scene::choose(const sd_ewald_box &box, const sd_ewald_sizes &sizes)
+sd_status FarField::choose_split(const sd_ewald_box &box, const sd_ewald_sizes &sizes)
 {
   const sd_wall &wall = settings.boundary.image_wall();
   const double tolerance = tolerance_of_sums();
   sd_status status;
   if (wall.sign)
     status = sd_ewald_choose_at_wall(&box, &wall, &sizes, tolerance, &ewald);
-  else if (settings.positive > 0.0 && box.periodic)
-    status = sd_ewald_choose_positive(&box, &sizes, width(), tolerance, settings.positive, &ewald);
+  else if (positive > 0.0 && box.periodic)
+    status = sd_ewald_choose_positive(&box, &sizes, width(), tolerance, positive, &ewald);
   else
     status = sd_ewald_levels_choose(&box, &sizes, width(), tolerance, &ewald, &second_level);
   if (harmless_error() < (1.0 - 1e-9) * SD_EWALD_SINGLE) ewald.single = 0;
@@ -114,14 +138,14 @@ sd_status Scene::choose(const sd_ewald_box &box, const sd_ewald_sizes &sizes)
   return status;
 }
 
-void Scene::no_grid(double count, const std::string &where, sd_status status) const
+void FarField::no_grid(double count, const std::string &where, sd_status status) const
 {
   voice.fail("keyword far_field: no grid for Ewald sums of " + text(count) + " spheres " + where +
              " at far_field_tolerance " + text(settings.far_field_tolerance) + ": " + sd_status_string(status));
 }
 
 /* Of spheres of other ranks and images, near those of one; each: images of one sphere */
-void Scene::refuse_images(double each, double images, double largest) const
+void FarField::refuse_images(double each, double images, double largest) const
 {
   if (!(images < MOST_IMAGES && each < MOST_OF_EACH))
     voice.fail("keyword far_field: the largest sphere, radius " + text(largest) +
@@ -131,17 +155,18 @@ void Scene::refuse_images(double each, double images, double largest) const
 
 /* Is the sum over everybody split, and how? In an open box only if that costs less, or is asked
  * for; of a few spheres it is known without a look at them. The same on all ranks. */
-bool Scene::split()
+bool FarField::split()
 {
-  if (settings.far_field == Settings::DIRECT) return false;
-  const bool must = periodic() || settings.far_field == Settings::EWALD;
-  if (!must && sum_of_all(world, points_here()) <= SD_EWALD_FEWEST) return false;
+  if (settings.far_field == SceneSettings::DIRECT) return false;
+  const bool must = periodic() || settings.far_field == SceneSettings::EWALD;
+  const double points_here = shells.on() ? shells.first_of_rows()[scene.size()] : scene.size();
+  if (!must && sum_of_all(world, points_here) <= SD_EWALD_FEWEST) return false;
   sd_ewald_box box = ewald.box;
   const sd_ewald_sizes sizes = measure(box);
   ewald.count = sizes.all.count;
   second_level = {};
   if (sizes.all.count == 0.0) return must;
-  const sd_status status = choose(box, sizes);
+  const sd_status status = choose_split(box, sizes);
   if (status != SD_OK && must)
     no_grid(sizes.all.count, "in a box of " + text(box.edge[0]) + " x " + text(box.edge[1]) + " x " +
             text(box.edge[2]), status);
@@ -155,8 +180,7 @@ bool Scene::split()
   return must || (status == SD_OK && sd_ewald_levels_cost(&ewald, &second_level) < all_pairs);
 }
 
-/* The engine of a scene in which everybody sees everybody */
-const sd_mobility_engine *Scene::engine_of_all()
+const sd_mobility_engine *FarField::choose()
 {
   if (settings.boundary.slab()) {
     split_slab();
@@ -167,35 +191,36 @@ const sd_mobility_engine *Scene::engine_of_all()
 }
 
 /* The points of all ranks */
-sd_slab_spheres Scene::measure_slab(const sd_slab_walls &walls) const
+sd_slab_spheres FarField::measure_slab(const sd_slab_walls &walls) const
 {
+  const sd_spheres s = scene.local();
   double bounds[4] = {0.0, 0.0, -INFINITY, -INFINITY};    // largest radius, 1/smallest; heights
-  for (int k = 0; k < size(); k++) {
-    const double height = sd_slab_height(&walls, &x[3 * (size_t) k]), reach = extent(a[k]);
-    if (!(a[k] > 0.0)) continue;
-    bounds[0] = std::max(bounds[0], grain(a[k]));
-    bounds[1] = std::max(bounds[1], 1.0 / grain(a[k]));
-    bounds[2] = std::max(bounds[2], reach - height);
-    bounds[3] = std::max(bounds[3], reach + height);
+  for (int k = 0; k < scene.size(); k++) {
+    const double height = sd_slab_height(&walls, s.x + 3 * (size_t) k), outside = extent(s.a[k]);
+    if (!(s.a[k] > 0.0)) continue;
+    bounds[0] = std::max(bounds[0], grain(s.a[k]));
+    bounds[1] = std::max(bounds[1], 1.0 / grain(s.a[k]));
+    bounds[2] = std::max(bounds[2], outside - height);
+    bounds[3] = std::max(bounds[3], outside + height);
   }
   MPI_Allreduce(MPI_IN_PLACE, bounds, 4, MPI_DOUBLE, MPI_MAX, world);
   return {sizes_of_all(bounds[0]), bounds[1] > 0.0 ? 1.0 / bounds[1] : 0.0, -bounds[2], bounds[3]};
 }
 
 /* The slab of all spheres; there is no other way to sum it. */
-void Scene::split_slab()
+void FarField::split_slab()
 {
   const sd_slab_walls walls = settings.boundary.slab_walls();
-  refuse_wide_spheres(voice, settings.boundary, most);
+  refuse_wide_spheres(voice, settings.boundary, scene.largest());
   const sd_slab_spheres all = measure_slab(walls);
   const sd_ewald_class &sizes = all.sizes.all;
   if (sizes.largest > SD_SLAB_RATIO * (1.0 + 1e-9) * all.smallest)
     voice.fail("keyword far_field: " + settings.boundary.where() +
                ", periodic along it, the largest radius must be at most " +
                text(SD_SLAB_RATIO) + " times the smallest, and they are " +
-               text(most) + " and " + text(least) +
+               text(scene.largest()) + " and " + text(scene.smallest()) +
                ": use group to select spheres");
-  sd_ewald_box box = lattice_box(domain);
+  sd_ewald_box box = Lattice::of(domain).ewald_box();
   box.periodic = 1;
   const sd_status status = sd_slab_choose(&walls, &box, &all, tolerance_of_sums(), &slab);
   ewald = slab.ewald;
@@ -218,9 +243,9 @@ static std::string parameters_of(const sd_ewald &e)
 }
 
 /* The parameters, once a run and when they are others than those told last. */
-void Scene::tell()
+void FarField::tell()
 {
-  if (!told.first_in(epochs.run)) return;
+  if (!told.first_in(scene.all_epochs().run)) return;
   const sd_ewald &e = ewald;
   std::string now = "Far field by Ewald sums of " + text(e.count + second_level.count) +
       " spheres " +
@@ -234,7 +259,7 @@ void Scene::tell()
   said = now;
 }
 
-std::vector<double> Scene::open_box() const
+std::vector<double> FarField::open_box() const
 {
   const sd_ewald_box &b = ewald.box;
   if (settings.boundary.slab()) return {slab.lo, slab.hi, slab.ewald.count, 0.0, 0.0, 0.0};
@@ -242,7 +267,7 @@ std::vector<double> Scene::open_box() const
   return {b.origin[0], b.origin[1], b.origin[2], b.edge[0], b.edge[1], b.edge[2]};
 }
 
-void Scene::set_open_box(const std::vector<double> &box)
+void FarField::set_open_box(const std::vector<double> &box)
 {
   ewald.box = {};
   slab.ewald.count = 0.0;
