@@ -26,7 +26,7 @@ bool FixStokesDynamicsOverdamped::goes_on(const Hydrodynamics &hydro) const
  * follow from these. */
 void FixStokesDynamicsOverdamped::find_causes(const Hydrodynamics &hydro, double *causes) const
 {
-  const int width = hydro.rotation() ? 6 : 3;
+  const int width = hydro.scene.width();
   double sums[KINDS] = {0.0}, fluid[6], of_box[3], given[6], pushed[6];
   sd_squirmer_stroke stroke;
   for (int i : hydro.ambient.who()) {

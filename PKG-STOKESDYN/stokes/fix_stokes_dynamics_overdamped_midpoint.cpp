@@ -86,7 +86,7 @@ void FixStokesDynamicsOverdamped::begin_midpoint(Hydrodynamics &hydro, const Sol
 /* Half the step by the velocities of now, all of it by those there, in the frame that goes with the box. */
 void FixStokesDynamicsOverdamped::move_by_midpoint(Hydrodynamics &hydro)
 {
-  const size_t width = hydro.rotation() ? 6 : 3;
+  const size_t width = hydro.scene.width();
   Moves V = found(hydro);
   drives.moved_with.assign(3 * (size_t) atom->nlocal + 3, 0.0);
   for (size_t i : steps.start().lone)

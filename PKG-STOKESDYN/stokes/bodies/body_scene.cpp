@@ -29,10 +29,9 @@ double BodyScene::memory_usage() const
   return sizeof(double) * numbers;
 }
 
-void BodyScene::place(int numbers)
+void BodyScene::place()
 {
-  width = numbers;
-  const size_t m = width;
+  const size_t m = scene.width();
   const auto row = [&](int i, double *out) {
     const double resists[2] = {ambient.drag(i), ambient.spin(i)};
     double load[6];
@@ -49,7 +48,7 @@ void BodyScene::place(int numbers)
   scene.columns(row, {{&F, m}, {&flow, m}, {&resistance, m}});
   if (given.velocities) return;
   refuse_net_force(voice, scene, F, m);
-  scene.drift(flow.data(), width, 1.0);
+  scene.drift(flow.data(), (int) m, 1.0);
 }
 
 void BodyScene::assemble(Films films)
@@ -206,7 +205,7 @@ static sd_status nobody(void *ctx, const double * /*F*/, double *out)
 
 void BodyScene::put_together()
 {
-  const int n = scene.size();
+  const int n = scene.size(), width = scene.width();
   const bool sees = engine.anybody_sees();
   const bool clumps = rigid.on;    // not one, on any rank: every sphere is a body, in the order of rows
   alone.how.width = shells.on() ? 3 : width;

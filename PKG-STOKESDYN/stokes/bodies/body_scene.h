@@ -30,8 +30,8 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   BodyScene(const Voice &voice, const Scene &, Engine &, Shells &, const Ambient &, const ClumpPoses &,
             Lubrication &);
 
-  /* Vectors have that many numbers of a sphere. The scene stands, and the clumps have been found. */
-  void place(int width);
+  /* The scene stands, and the clumps have been found. */
+  void place();
   /* FILMS: those between the spheres where they stand, in the fluid of this step. NOISY_FILMS: the same, and
    * random forces will be drawn. STANDING_FILMS: those that stand_films() has left, with the arms of then */
   enum Films { NO_FILMS, FILMS, NOISY_FILMS, STANDING_FILMS };
@@ -50,9 +50,8 @@ class BodyScene : protected LAMMPS_NS::Pointers {
     return shells.on() || (rigid.on && !rigid.each_alone() && rigid.shell > 1);
   }
 
-  /* By spheres, width numbers each: loads; velocity of the fluid, where velocities are given less
+  /* By spheres, rows of the scene: loads; velocity of the fluid, where velocities are given less
    * that of the sphere; 6 pi eta a and 8 pi eta a^3 */
-  int width = 3;
   std::vector<double> F, flow, resistance;
 
   /* The bodies, and the fluid at their points. velocities [6 bodies]: of those whose velocity is given;

@@ -172,8 +172,9 @@ sd_clump_motion ClumpPoses::look_at(const Clump &clump) const
   return m;
 }
 
-void ClumpPoses::velocities(int width, const ToAtom &take)
+void ClumpPoses::velocities(const ToAtom &take)
 {
+  const int width = rigid.settings.rotation ? 6 : 3;
   double fluid_there[6], V[6], by_fluid[6], load[6], D[6];
   for (int i : lone()) {
     const bool known = given.known && given.known(i, V);

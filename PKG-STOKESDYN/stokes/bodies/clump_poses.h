@@ -78,9 +78,8 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
   /* That this rank owns, and atoms that are free spheres, the latter where loads are given. They are
    * those of the last find(), and none as soon as Epochs::lists is another one: settings are new, a run
    * begins, atoms have other indices */
-  const std::vector<Clump> &clumps() const { return stands() ? all_clumps : no_clumps; }
-  const std::vector<int> &lone() const { return stands() ? all_lone : nobody_lone; }
-  bool stands() const { return found.is(epochs.lists); }
+  const std::vector<Clump> &clumps() const { return standing(all_clumps); }
+  const std::vector<int> &lone() const { return standing(all_lone); }
   const RigidClumps::OwnClump &own_clump(const Clump &clump) const { return rigid.own_clump(clump.number); }
   const ClumpShape &shape(const Clump &clump) const { return *own_clump(clump).shape; }
   /* Sphere k of a clump, in the order of its shape: its number among the members of whole */
@@ -100,9 +99,9 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
   // --- each clump by itself, by the tables of its shape
 
   /* From loads, what becomes of atom i, of clumps and of free spheres: velocity, and force of the
-   * fluid on it, [width] each */
+   * fluid on it, 3 numbers each, with torques 6 */
   using ToAtom = std::function<void(int i, const double *v, const double *F)>;
-  void velocities(int width, const ToAtom &take);
+  void velocities(const ToAtom &take);
   /* From velocities, of clumps that move as their spheres do: calls take(i, F) for every sphere i of
    * this rank that is in one that takes part: force, with rotation torque. left_over[i] = 1: atom i belongs
    * to a loose clump, or to none (molecule 0), and is the solver's. */
@@ -121,8 +120,11 @@ class ClumpPoses : protected LAMMPS_NS::Pointers {
   /* of who takes part (Epochs::selection) */
   std::vector<int> all_lone;
   Stamp lone_found;
-  const std::vector<Clump> no_clumps;
-  const std::vector<int> nobody_lone;
+  template <class T> const std::vector<T> &standing(const std::vector<T> &those) const
+  {
+    static const std::vector<T> nobody;
+    return found.is(epochs.lists) ? those : nobody;
+  }
 
   /* of the spheres of one clump after the other, in the order of its shape: eta (0: takes no part),
    * radius, place, velocity and angular velocity (empty: not given), fluid velocity and its gradient

@@ -103,7 +103,7 @@ sd_noise_spheres Noise::find_spheres(Hydrodynamics &hydro, size_t width)
   const sd_random_key of_sphere = key(SD_RANDOM_SPHERE);
   for (size_t k = 0; k < n; k++)
     sd_random_normals(&of_sphere, scene.tag(k), (int) width, &w[width * k]);
-  const size_t engine_width = hydro.rotation() ? 6 : 3;
+  const size_t engine_width = scene.width();
   for (auto *rows : {&engine_F, &engine_u}) rows->assign(engine_width * (n + 1), 0.0);
   return {n, width, engine_width, D.data(), hydro.engine.anybody_sees() ? sd_mobility_apply : nullptr,
           hydro.engine.mobility(),

@@ -1,6 +1,7 @@
 #include "scene.h"
 
-#include "keywords.h"
+#include "ambient.h"
+#include "halo.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -14,8 +15,8 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
-Scene::Scene(const Voice &voice, Epochs &epochs, const SceneSettings &settings) :
-    Pointers(voice.lmp), settings(settings), whole(voice, epochs), epochs(epochs)
+Scene::Scene(const Voice &voice, Epochs &epochs, const Ambient &ambient, const SceneSettings &settings) :
+    Pointers(voice.lmp), settings(settings), whole(voice, epochs), epochs(epochs), ambient(ambient)
 {
 }
 
@@ -62,7 +63,7 @@ void Scene::find_rows()
   }
 }
 
-void Scene::stand(const std::vector<int> &who, const Ambient &ambient)
+void Scene::stand(const std::vector<int> &who)
 {
   double measured[3] = {!found.is(epochs.lists) || who != own ? 1.0 : 0.0, 0.0, -INFINITY};
   for (int i : who) {
@@ -78,8 +79,6 @@ void Scene::stand(const std::vector<int> &who, const Ambient &ambient)
     find_rows();
   }
   found.set(epochs.lists);
-  jumping = ambient.jumps();
-  if (jumping) std::copy_n(ambient.jumps(), 6, jumps);
   const auto row = [&](int i, double *out) {
     copy<3>(atom->x[i], out);
     out[3] = atom->radius[i];
@@ -90,11 +89,17 @@ void Scene::stand(const std::vector<int> &who, const Ambient &ambient)
     if (row_of[m] >= 0) std::copy_n(&whole.x[3 * m], 3, &x[3 * (size_t) row_of[m]]);
 }
 
+const double *Scene::drift_of_images() const
+{
+  return ambient.jumps();
+}
+
 void Scene::drift(double *rows, int width, double sign) const
 {
+  const double *jumps = ambient.jumps();
   double signed_jumps[6];
-  for (int d = 0; d < 6; d++) signed_jumps[d] = sign * jumps[d];
-  for (size_t m = 0; m < row_of.size() && jumping; m++)
+  for (int d = 0; d < 6 && jumps; d++) signed_jumps[d] = sign * jumps[d];
+  for (size_t m = 0; m < row_of.size() && jumps; m++)
     if (row_of[m] >= 0)
       sd_add_edges(signed_jumps, &whole.edges[3 * m], rows + width * (size_t) row_of[m]);
 }

@@ -8,9 +8,7 @@
 #ifndef SD_SCENE_H
 #define SD_SCENE_H
 
-#include "ambient.h"
 #include "copy.h"
-#include "halo.h"
 #include "pointers.h"
 #include "scene_settings.h"
 #include "whole_clumps.h"
@@ -40,9 +38,12 @@ inline void take_apart(const std::vector<double> &rows, size_t n, std::initializ
   }
 }
 
+class Ambient;
+class Halo;
+
 class Scene : protected LAMMPS_NS::Pointers {
  public:
-  Scene(const Voice &voice, Epochs &epochs, const SceneSettings &settings);
+  Scene(const Voice &voice, Epochs &epochs, const Ambient &, const SceneSettings &);
 
   const SceneSettings &settings;
   /* Since when all of this is as it is */
@@ -51,9 +52,11 @@ class Scene : protected LAMMPS_NS::Pointers {
 
   /* The atoms of this rank that take part, in the fluid of this step: the rows, and where they
    * stand. whole stands already. */
-  void stand(const std::vector<int> &who, const Ambient &ambient);
+  void stand(const std::vector<int> &who);
   const std::vector<int> &who() const { return own; }
   int size() const { return (int) tags.size(); }
+  /* Numbers of a row */
+  int width() const { return settings.rotation ? 6 : 3; }
   int64_t tag(int k) const { return tags[k]; }
   int64_t molecule(int k) const { return molecules[k]; }
   const std::vector<int64_t> &all_tags() const { return tags; }
@@ -109,7 +112,7 @@ class Scene : protected LAMMPS_NS::Pointers {
   void drift(double *rows, int width, double sign) const;
   /* By how much the velocity of an image grows with each edge of the box, in the order of Lattice::h;
    * nullptr: not at all */
-  const double *drift_of_images() const { return jumping ? jumps : nullptr; }
+  const double *drift_of_images() const;
 
   /* Where the spheres of the rows stand, and with those behind them, their copies, since they were brought */
   sd_spheres local() const { return {x.data(), a.data(), w.data()}; }
@@ -124,6 +127,7 @@ class Scene : protected LAMMPS_NS::Pointers {
 
  private:
   Epochs &epochs;
+  const Ambient &ambient;
 
   Stamp found;
   /* atoms that take part; those whose rows are the first here; rows of the members of whole */
@@ -134,9 +138,6 @@ class Scene : protected LAMMPS_NS::Pointers {
   /* of columns(): kept, since what a step asks the system for and gives back is cleared each time */
   mutable std::vector<double> together;
   double most = 0.0, least = 0.0;
-  /* by how much the velocity of an image grows with each edge of the box: Ambient::jumps */
-  double jumps[6] = {0.0};
-  bool jumping = false;
 
   void find_rows();
   void sort_lone_atoms();

@@ -72,7 +72,7 @@ class Guess : protected LAMMPS_NS::Pointers {
   void choose(const sd_guess_answers &found, double kept);
   /* 1: the next guess is on it; 0: it is the last answer */
   double line() const;
-  size_t width() const { return settings.scene.rotation ? 6 : 3; }
+  size_t width() const { return scene.width(); }
   uint64_t number(Question asked) const;
   double solves_kept(Question asked) const;
   std::vector<double> recall_forces() const;

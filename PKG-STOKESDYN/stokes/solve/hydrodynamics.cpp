@@ -21,12 +21,9 @@ namespace StokesDyn {
 
 using State = FixStokesDynamicsState;
 
-// A tolerance to which a warm start leaves an iteration or two
-static const double LOOSE = 1e-3;
-
 Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
     Pointers(lmp), voice(lmp, StokesSettings::COMMAND), ambient(voice, epochs, settings.ambient),
-    scene(voice, epochs, settings.scene), shells(voice, settings.shells), engine(voice, scene, shells),
+    scene(voice, epochs, ambient, settings.scene), shells(voice, settings.shells), engine(voice, scene, shells),
     rigid(voice, scene.whole, epochs, settings.rigid), lubrication(voice, settings.lubrication, shells),
     clump_poses(lmp, scene.whole, epochs, ambient, rigid, given),
     bodies(voice, scene, engine, shells, ambient, clump_poses, lubrication),
@@ -49,8 +46,6 @@ void Hydrodynamics::set(const std::vector<std::string> &words)
   advance();
   rigid.forget();
   solver.preconditioner.forget();
-  solver.preconditioner.kind = settings.precondition;
-  solver.preconditioner.easy = settings.history() && settings.tolerance >= LOOSE;
 }
 
 void Hydrodynamics::init()
@@ -105,7 +100,7 @@ void Hydrodynamics::begin(Moment moment)
 /* The rows of this step's spheres where they stand now, and their shells with them */
 void Hydrodynamics::stand()
 {
-  scene.stand(solved_atoms, ambient);
+  scene.stand(solved_atoms);
   rows_stand.set(epochs.step);
   if (!shells.on()) return;
   fit_shells();
@@ -148,7 +143,7 @@ void Hydrodynamics::clumps()
     return;
   }
   const bool wants_perturbation = reports_perturbation || settings.rigid.auto_resolve;
-  const size_t m = width();
+  const size_t m = scene.width();
   const auto take = [this, wants_perturbation, m](int i, const double *F) {
     double *row = memory->rows.writable(i), s[6];
     for (size_t d = 0; d < m; d++) row[State::at(State::FORCE, d)] = F[d];
@@ -175,7 +170,7 @@ void Hydrodynamics::clumps()
  * clumps; and lubrication. */
 void Hydrodynamics::drag()
 {
-  const size_t m = width();
+  const size_t m = scene.width();
   for (int i : solved_atoms) {
     const double k[2] = {ambient.drag(i), ambient.spin(i)};
     double *row = memory->rows.writable(i), s[6];
@@ -192,7 +187,7 @@ void Hydrodynamics::solve()
 {
   if (settings.rigid.each_alone() && !rigid.any_loose()) return;
   place();
-  bodies.place(width());
+  bodies.place();
   sd_solve_report report = {};
   const sd_status status = engine.anybody_sees() ? find_forces(report) : SD_OK;
   account_for(status, report);
@@ -208,7 +203,7 @@ void Hydrodynamics::velocities(const Solve::ToAtom &take, const Given &known, do
   given = known;
   if (settings.rigid.each_alone()) {
     clump_poses.find();
-    clump_poses.velocities(width(), take);
+    clump_poses.velocities(take);
   } else
     status = find_motions(take, drawn, report);
   if (given_rows.first_in(epochs.selection))    // those that have a row are known to have moved here
@@ -391,7 +386,7 @@ double Hydrodynamics::dissipation(int i) const
 
 double Hydrodynamics::memory_usage() const
 {
-  const double films = films_v.capacity() + films_F.capacity() + films_power.capacity();
+  const double films = films_v.capacity() + films_power.capacity();
   return ambient.memory_usage() + scene.memory_usage() + engine.memory_usage() + shells.memory_usage() +
       rigid.memory_usage() + lubrication.memory_usage() + clump_poses.memory_usage() +
       bodies.memory_usage() + solver.memory_usage() + sizeof(double) * films;

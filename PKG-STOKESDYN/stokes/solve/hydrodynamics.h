@@ -166,8 +166,8 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* The atoms of this rank whose forces a solve finds: all that take part, without those of rigid clumps
    * that move each by itself. The scene makes the rows of a solve of them. */
   std::vector<int> solved_atoms;
-  /* by rows: velocities of the spheres, and forces of lubrication on them */
-  std::vector<double> films_v, films_F;
+  /* by rows: velocities of the spheres, as films know them */
+  std::vector<double> films_v;
   /* [nlocal], or empty: of strain_power() */
   std::vector<double> films_power;
 
@@ -175,7 +175,6 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   Stamp rows_stand;
   bool standing() const { return rows_stand.is(epochs.step); }
 
-  int width() const { return rotation() ? 6 : 3; }    // unknowns of a sphere
   void advance();
   void place();
   void look_at_wall();

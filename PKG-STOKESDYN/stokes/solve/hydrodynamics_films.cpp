@@ -69,12 +69,12 @@ void Hydrodynamics::place_films()
 void Hydrodynamics::lubricate()
 {
   place_films();
-  films_F.resize(films_v.size());
-  lubrication.forces(films_v.data(), films_F.data());
+  std::vector<double> by_films(films_v.size());
+  lubrication.forces(films_v.data(), by_films.data());
   find_films_power();
   if (update->setupflag || update->ntimestep % LOOK_AT_FILMS == 0)
     guard.look_at_films(*lubrication.matrix(), scene);
-  scene.to_atoms(6, films_F.data(), [this](int i, const double *F) {
+  scene.to_atoms(6, by_films.data(), [this](int i, const double *F) {
     double *row = memory->rows.row(i);
     for (int d = 0; d < 6; d++) row[State::at(State::FORCE, d)] += F[d];
   });

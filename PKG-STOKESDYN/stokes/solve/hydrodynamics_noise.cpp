@@ -24,7 +24,7 @@ void Hydrodynamics::assemble(BodyScene::Films films)
 {
   clump_poses.find();
   place();
-  bodies.place(width());
+  bodies.place();
   bodies.assemble(films);
 }
 

@@ -106,7 +106,7 @@ FlowSources Hydrodynamics::on_fluid()
 {
   if (shells.on()) return of_points_on_fluid();
   const bool without_films = settings.lubrication.on && !overdamped;
-  const int m = width();
+  const int m = scene.width();
   FlowSources all;
   all.reserve(ambient.who().size());
   const auto add = [&](int i, const double *F) {
@@ -119,7 +119,7 @@ FlowSources Hydrodynamics::on_fluid()
   };
   if (overdamped && settings.rigid.each_alone()) {    // these are not kept
     clump_poses.find();
-    clump_poses.velocities(width(), [&](int i, const double *, const double *F) { add(i, F); });
+    clump_poses.velocities([&](int i, const double *, const double *F) { add(i, F); });
     return all;
   }
   for (int i : ambient.who()) {

@@ -16,6 +16,12 @@ namespace StokesDyn {
 
 using Settings = StokesSettings;
 
+// Do solves begin near to what is good enough? From the last ones, to a tolerance that leaves an iteration or two.
+static bool easy(const Settings &settings)
+{
+  return settings.history() && settings.tolerance >= 1e-3;
+}
+
 /* Unknowns whose matrix is inverted as it is. A product with the inverse takes about as long as one
  * with the matrix, making it as long as some hundred. */
 static const int FEW = 200;
@@ -24,12 +30,12 @@ static const int FEW = 200;
 const sd_precondition_kind *Preconditioner::suited() const
 {
   const bool periodic = engine.splitting() && engine.splitting()->box.periodic;
-  Kind that = kind;
-  if (kind == Settings::AUTO) {
+  Settings::Precondition that = settings.precondition;
+  if (that == Settings::AUTO) {
     if (periodic)
       that = Settings::WAVES;
-    else if (engine.view() == SD_VIEW_ALL)
-      that = !few() ? Settings::SPARSE : easy ? Settings::NONE : Settings::CLUMP;
+    else if (of_all())
+      that = !few() ? Settings::SPARSE : easy(settings) ? Settings::NONE : Settings::CLUMP;
     else
       that = atom->molecule ? Settings::CLUMP : Settings::NONE;
   }
@@ -47,14 +53,11 @@ const sd_precondition_kind *Preconditioner::suited() const
 
 bool Preconditioner::few() const
 {
-  return cloud && width * n <= FEW;
+  return of_all() && scene.width() * count() <= FEW;
 }
 
 void Preconditioner::attach(sd_system &system, AtomRows &at, std::vector<double> &its_box)
 {
-  cloud = engine.view() == SD_VIEW_ALL;
-  n = cloud ? engine.cloud.size() : scene.size();
-  width = system.spin ? 6 : 3;
   put_in.never();
   places = &at;
   box = &its_box;
@@ -92,8 +95,8 @@ void Preconditioner::find_positions()
 {
   std::vector<double> rows =
       scene.rows(3, [this](int i, double *out) { std::copy_n((*places)[i], 3, out); });
-  x.resize(3 * (size_t) n + 3);
-  if (cloud)
+  x.resize(3 * (size_t) count() + 3);
+  if (of_all())
     engine.cloud.to_all(rows.data(), x.data(), 3);
   else
     x.swap(rows);
@@ -104,9 +107,9 @@ void Preconditioner::group()
 {
   first.assign(1, 0);
   member.clear();
-  if (kind == Settings::AUTO && few()) {
-    for (int i = 0; i < n; i++) member.push_back(i);
-    first.push_back(n);
+  if (settings.precondition == Settings::AUTO && few()) {
+    for (int i = 0; i < count(); i++) member.push_back(i);
+    first.push_back(count());
   } else if (wanted != &sd_precondition_sparse)
     group_by_molecule();
 }
@@ -115,8 +118,8 @@ void Preconditioner::group()
 void Preconditioner::group_by_molecule()
 {
   std::map<int64_t, std::vector<int>> clumps;
-  for (int i = 0; i < n && atom->molecule; i++) {
-    const int64_t molecule = cloud ? engine.cloud.molecules()[i] : scene.molecule(i);
+  for (int i = 0, n = count(); i < n && atom->molecule; i++) {
+    const int64_t molecule = of_all() ? engine.cloud.molecules()[i] : scene.molecule(i);
     if (molecule != 0 && spheres().a[i] > 0.0) clumps[molecule].push_back(i);
   }
   for (const auto &clump : clumps) {
@@ -130,6 +133,7 @@ void Preconditioner::group_by_molecule()
 /* A sphere near a wall is a clump with its image. */
 void Preconditioner::add_lone()
 {
+  const int n = count();
   std::vector<char> bound(n + 1, 0);
   for (int i : member) bound[i] = 1;
   for (int i = 0; i < n; i++) {
@@ -156,18 +160,18 @@ sd_status Preconditioner::put()
   refresh_places();
   find_positions();
   group();
-  if (!cloud) put_side_by_side();
+  if (!of_all()) put_side_by_side();
   sd_precondition_case c = {};
   c.law = scene.settings.law();
   c.spheres = {x.data(), spheres().a, spheres().w};
-  c.n = n;
-  c.width = width;
+  c.n = count();
+  c.width = scene.width();
   c.clumps = first.size() - 1;
   c.first = first.data();
   c.member = member.data();
   if (wanted == &sd_precondition_waves) c.box = &engine.splitting()->box;
-  c.part = cloud ? comm->me : 0;
-  c.parts = cloud ? comm->nprocs : 1;
+  c.part = of_all() ? comm->me : 0;
+  c.parts = of_all() ? comm->nprocs : 1;
   c.world = engine.ranks();
   return sd_preconditioner_make(&made, wanted, &c);
 }
@@ -176,21 +180,22 @@ sd_status Preconditioner::apply(void *ctx, const double *r, double *z)
 {
   Preconditioner *p = static_cast<Preconditioner *>(ctx);
   return callback([=] {
-    const size_t width = p->width, own = width * p->scene.size();
+    const bool of_all = p->of_all();
+    const size_t width = p->scene.width(), own = width * p->scene.size(), all = width * p->count();
     if (!p->put_in.is(p->scene.all_epochs().step)) {
       const sd_status status = p->put();
       if (status != SD_OK) return status;
       p->put_in.set(p->scene.all_epochs().step);
     }
-    p->in.resize(width * p->n + 1);
-    p->out.resize(width * p->n + 1);
-    if (p->cloud)
+    p->in.resize(all + 1);
+    p->out.resize(all + 1);
+    if (of_all)
       p->engine.cloud.to_all(r, p->in.data(), width);
     else
       std::copy_n(r, own, p->in.begin());
     const sd_status status =
         sd_preconditioner_apply(&p->made, p->spheres().w, p->in.data(), p->out.data());
-    if (p->cloud)
+    if (of_all)
       p->engine.cloud.to_own(p->out.data(), z, width);
     else
       std::copy_n(p->out.begin(), own, z);

@@ -26,14 +26,8 @@ namespace StokesDyn {
 
 class Preconditioner : protected LAMMPS_NS::Pointers {
  public:
-  /* as keyword precondition has it */
-  using Kind = StokesSettings::Precondition;
-  Kind kind = StokesSettings::AUTO;
-  /* Do solves begin near to what is good enough, from the last ones to a loose tolerance? */
-  bool easy = false;
-
-  Preconditioner(LAMMPS_NS::LAMMPS *lmp, const Scene &scene, Engine &engine) :
-      Pointers(lmp), scene(scene), engine(engine)
+  Preconditioner(LAMMPS_NS::LAMMPS *lmp, const Scene &scene, Engine &engine, const StokesSettings &settings) :
+      Pointers(lmp), scene(scene), engine(engine), settings(settings)
   {
   }
 
@@ -48,12 +42,11 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
  private:
   const Scene &scene;
   Engine &engine;
+  const StokesSettings &settings;
   const sd_precondition_kind *wanted = nullptr;    // nullptr: none
   Owned<sd_preconditioner, sd_preconditioner_free> made;
 
   // of this solve
-  bool cloud = false;
-  int n = 0, width = 3;
   Stamp put_in;
   AtomRows *places = nullptr;
   std::vector<double> *box = nullptr;
@@ -65,7 +58,10 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
   const sd_precondition_kind *suited() const;
   /* so few spheres that the inverse of the whole cloud's matrix is made, one block? */
   bool few() const;
-  sd_spheres spheres() const { return cloud ? engine.cloud.spheres() : scene.local(); }
+  /* is it of the spheres of all ranks? how many it is of, and these */
+  bool of_all() const { return engine.view() == SD_VIEW_ALL; }
+  int count() const { return of_all() ? engine.cloud.size() : scene.size(); }
+  sd_spheres spheres() const { return of_all() ? engine.cloud.spheres() : scene.local(); }
   void refresh_places();
   void find_positions();
   void group();

@@ -12,7 +12,7 @@ namespace StokesDyn {
 
 Solve::Solve(LAMMPS *lmp, const Scene &scene, Engine &engine, BodyScene &bodies, const Shells &shells,
              const StokesSettings &settings) :
-    Pointers(lmp), preconditioner(lmp, scene, engine), guess(lmp, scene, engine, bodies, shells, settings),
+    Pointers(lmp), preconditioner(lmp, scene, engine, settings), guess(lmp, scene, engine, bodies, shells, settings),
     scene(scene), engine(engine), bodies(bodies), shells(shells), settings(settings), factor(lmp, scene, bodies)
 {
 }
@@ -20,7 +20,7 @@ Solve::Solve(LAMMPS *lmp, const Scene &scene, Engine &engine, BodyScene &bodies,
 double Solve::memory_usage() const
 {
   double numbers = (double) room;
-  for (const auto *array : {&exerted, &v, &V, &l, &v_with_l, &F, &drag, &spin, &work, &slip, &pushed, &slip_left,
+  for (const auto *array : {&exerted, &v, &V, &l, &v_with_l, &drag, &spin, &work, &slip, &pushed, &slip_left,
                             &load_left, &of_moves})
     numbers += (double) array->capacity();
   return sizeof(double) * numbers + preconditioner.memory_usage();
@@ -44,7 +44,7 @@ sd_status Solve::run(const How &how, sd_solve_report &report)
 
 sd_status Solve::resist(const double *motions, int max_iter, double *forces)
 {
-  const std::vector<double> moving(motions, motions + bodies.width * scene.size());
+  const std::vector<double> moving(motions, motions + scene.width() * scene.size());
   std::vector<double> exerted_before = exerted, l_before = l, v_before = v_with_l;
   sd_solve_report unused = {};
   bodies.rest_in(moving, false);
@@ -80,11 +80,11 @@ sd_status Solve::solve_bodies(const How &how, Guess::Start start, sd_solve_repor
 
 void Solve::hand_out(const ToAtom &take) const
 {
-  const size_t m = bodies.width;
+  const size_t m = scene.width();
   std::vector<double> of_atoms;    // not those of the image next to its clump
   if (scene.drift_of_images()) {
     of_atoms = v;
-    scene.drift(of_atoms.data(), bodies.width, -1.0);
+    scene.drift(of_atoms.data(), scene.width(), -1.0);
   }
   const double *moves = of_atoms.empty() ? v.data() : of_atoms.data();
   double moved[12];
@@ -93,14 +93,14 @@ void Solve::hand_out(const ToAtom &take) const
     for (size_t d = 0; d < m; d++) moved[m + d] = -exerted[m * k + d];
     return (const double *) moved;
   };
-  scene.some_to_atoms(2 * bodies.width, at, [&](int i, const double *row) { take(i, row, row + m); });
+  scene.some_to_atoms(2 * scene.width(), at, [&](int i, const double *row) { take(i, row, row + m); });
 }
 
 // --- points whose velocities are given -------------------------------------------------------------
 
 sd_system Solve::system()
 {
-  const size_t n = scene.size(), m = bodies.width;
+  const size_t n = scene.size(), m = scene.width();
   drag.resize(n + 1);
   spin.resize(n + 1);
   for (size_t k = 0; k < n; k++) {
@@ -119,7 +119,7 @@ sd_system Solve::system()
 
 double *Solve::make_room()
 {
-  const size_t needed = SD_SOLVE_WORK(scene.size(), bodies.width) + 1;
+  const size_t needed = SD_SOLVE_WORK(scene.size(), scene.width()) + 1;
   if (needed > room) {
     scratch.reset();
     scratch.reset(new double[needed]);
@@ -131,31 +131,31 @@ double *Solve::make_room()
 sd_status Solve::substitution(const How &how, sd_solve_report &report)
 {
   const sd_system A = system();
-  F.resize(bodies.flow.size() + bodies.width);
+  exerted.resize(bodies.flow.size() + scene.width());
   const sd_status status = sd_solve_substitution(&A, bodies.flow.data(), how.tolerance, how.max_iter,
-                                                 F.data(), make_room(), &report);
-  take_forces();
+                                                 exerted.data(), make_room(), &report);
+  turn_forces();
   return status;
 }
 
 sd_status Solve::gradients(const How &how, sd_solve_report &report)
 {
   sd_system A = system();
-  F.resize(bodies.flow.size() + bodies.width);
+  exerted.resize(bodies.flow.size() + scene.width());
   const Guess::Start start = guess.recall(how.asked);
   A.warm = start.warm;
-  for (size_t j = 0; j < bodies.flow.size() && A.warm; j++) F[j] = -start.l[j];
+  for (size_t j = 0; j < bodies.flow.size() && A.warm; j++) exerted[j] = -start.l[j];
   preconditioner.attach(A, guess.memory->made_at, guess.memory->global.made_in_box);
   const sd_status status = sd_solve_gradients(&A, bodies.flow.data(), how.tolerance, how.max_iter,
-                                              F.data(), make_room(), &report);
-  take_forces();
+                                              exerted.data(), make_room(), &report);
+  turn_forces();
   return status;
 }
 
-void Solve::take_forces()
+/* These solvers find the force of the fluid. */
+void Solve::turn_forces()
 {
-  exerted.resize(F.size());
-  for (size_t j = 0; j < bodies.flow.size(); j++) exerted[j] = -F[j];
+  for (size_t j = 0; j < bodies.flow.size(); j++) exerted[j] = -exerted[j];
 }
 
 }    // namespace StokesDyn

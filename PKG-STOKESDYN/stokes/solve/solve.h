@@ -119,8 +119,8 @@ class Solve : protected LAMMPS_NS::Pointers {
   FilmsFactor factor;
   Stamp found;
 
-  /* by spheres: force of the fluid, what system() points to; scratch of sd_bodies */
-  std::vector<double> F, drag, spin, work;
+  /* by spheres: what system() points to; scratch of sd_bodies */
+  std::vector<double> drag, spin, work;
   /* what was drawn: by rows, by spheres; what is left of the drift, likewise; A W by rows, e and kT of it */
   BodyNoise shapes;
   std::vector<double> slip, pushed, slip_left, load_left, of_moves;
@@ -133,7 +133,7 @@ class Solve : protected LAMMPS_NS::Pointers {
 
   sd_status solve_bodies(const How &how, Guess::Start start, sd_solve_report &report);
   double *make_room();
-  void take_forces();
+  void turn_forces();
   std::vector<double> numbers(const sd_random_key &of_spheres) const;
   std::vector<double> numbers_of_bodies(const sd_random_key &) const;
   void draw_slip(const Draw &draw);

@@ -18,7 +18,7 @@ std::vector<double> Solve::numbers(const sd_random_key &of_spheres) const
   std::vector<double> w(sd_bodies_unknowns(&bodies.bodies) + 1);
   double *next = w.data();
   for (size_t k = 0; k < (size_t) scene.size(); k++) {
-    const int m = shells.on() ? 3 * shells.points_of_row(k) : bodies.width;
+    const int m = shells.on() ? 3 * shells.points_of_row(k) : scene.width();
     sd_random_normals(&of_spheres, scene.tag((int) k), m, next);
     next += m;
   }
@@ -84,7 +84,7 @@ void Solve::draw(const Draw &draw)
   shapes.begin(scene.all_epochs().run);
   kT = draw.kT;
   draw_slip(draw);
-  pushed.assign(sd_bodies_loads(&A) + bodies.width, 0.0);
+  pushed.assign(sd_bodies_loads(&A) + scene.width(), 0.0);
   slip_left.assign(slip.size(), 0.0);
   load_left.assign(pushed.size(), 0.0);
   sd_status status = SD_OK;
