@@ -27,7 +27,8 @@ using namespace StokesDyn;
 
 FixStokesDynamicsOverdamped::FixStokesDynamicsOverdamped(LAMMPS *lmp, int narg, char **arg) :
     RowsFix(lmp, narg, arg), adapt(), noise(voice), directions(lmp), drives(voice, directions), lone_velocity(3),
-    random(6), steps(lmp, drives, directions, turned), before(9), output(OUTPUTS), turned(4)
+    random(6), steps(lmp, drives, directions, turned), before(9), output(OUTPUTS), turned(4),
+    causes(lmp, drives)
 {
   Keywords in = keywords(narg, arg);
   in.elsewhere("visc fluid_velocity fluid_vorticity cut_off_distance clumps_only region group rotation rigid_clumps "
@@ -157,7 +158,7 @@ void FixStokesDynamicsOverdamped::set_up_early()
 {
   if (first != WAIT) return;
   set_up();
-  note_causes(hydrodynamics());
+  causes.note(hydrodynamics());
   first = EARLY;
 }
 
@@ -165,7 +166,7 @@ void FixStokesDynamicsOverdamped::after_setup()
 {
   if (first != EARLY)
     set_up();
-  else if (!causes_stand(hydrodynamics(), LOADS))
+  else if (!causes.stand(hydrodynamics(), Causes::LOADS))
     voice.at_step().fail("a fix took its first value of a stress before all forces of this step were known: "
                          "define it after the fixes that add forces");
   first = FOUND;
@@ -178,10 +179,7 @@ void FixStokesDynamicsOverdamped::set_up()
   find_drives(hydro);
   noise.begin(last.step);
   const bool same_run = goes_on(hydro);
-  if (!same_run || !causes_stand(hydro)) {
-    before.clear();
-    drives.before.clear();
-  }
+  if (!same_run || last.atoms != atom->natoms || !causes.stand(hydro)) forget_before();
   hydro.new_run(same_run);
   if (same_run && from_file && adapt.every && last.next_dt > 0.0) set_step(last.next_dt);
   from_file = false;
@@ -191,6 +189,21 @@ void FixStokesDynamicsOverdamped::set_up()
   drives.note_start();
   if (!announced) announce();
   if (adapt.every && !same_run) end_of_step();
+}
+
+/* Does the run begin where, and as, the last one ended? Then the velocities of before still count. */
+bool FixStokesDynamicsOverdamped::goes_on(const Hydrodynamics &hydro) const
+{
+  int moved = last.step != update->ntimestep || !hydro.memory->box_left_as_is();
+  for (int i : hydro.ambient.who())
+    if (!hydro.memory->placed_as_left(i)) moved = 1;
+  return !largest_of_all(world, moved);
+}
+
+void FixStokesDynamicsOverdamped::forget_before()
+{
+  before.clear();
+  drives.before.clear();
 }
 
 void FixStokesDynamicsOverdamped::announce()
@@ -215,10 +228,7 @@ void FixStokesDynamicsOverdamped::final_integrate()
   if (update->ntimestep == update->firststep + 1) look_at_neighbours();
   hydro.begin();
   find_drives(hydro);
-  if (last.atoms != atom->natoms) {    // those that are left move as they did not before
-    before.clear();
-    drives.before.clear();
-  }
+  if (last.atoms != atom->natoms) forget_before();    // those that are left move as they did not before
   find_velocities(hydro);
 }
 
@@ -228,9 +238,10 @@ void FixStokesDynamicsOverdamped::find_velocities(Hydrodynamics &hydro)
   drives.check_loads(hydro);
   check_images(voice, hydro.ambient.jumps());
   check_strain(voice, hydro.ambient.box_motion());
-  forget_before_change(hydro);
-  causes_due = true;
-  if (has_noise_in_solve()) note_causes(hydro);    // which reads another fluid
+  // Another velocity than before (a dynamic group): on the line through both who is pinned would leave its place.
+  if (causes.others_held(hydro)) forget_before();
+  causes.due = true;
+  if (has_noise_in_solve()) causes.note(hydro);    // which reads another fluid
   last.atoms = atom->natoms;
   const bool spins = hydro.rotation(), directed = steps.turns();
   const Solve::ToAtom take = [&, spins, directed](int i, const double *v, const double *F) {

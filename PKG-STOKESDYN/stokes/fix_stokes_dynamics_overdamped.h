@@ -9,6 +9,7 @@
 #define SD_FIX_STOKES_DYNAMICS_OVERDAMPED_H
 
 #include "body_steps.h"
+#include "causes.h"
 #include "drives.h"
 #include "hydrodynamics.h"
 #include "neighbours_stokes.h"
@@ -79,17 +80,12 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   AtomArray output;
   /* [4] and from step to step: where bodies go it turns, and nothing else of the output is touched */
   AtomArray turned;
-  enum { LOADS = 4, KINDS = 10, CAUSES = 12 };
   /* also in restart files: the step of the velocities (-1: never), its length; the length that
    * adapt wants next; atoms there are */
   struct {
     double step = -1, dt = 0.0, next_dt = 0.0, atoms = 0.0;
-    /* fingerprints of what velocities follow from: forces, torques, the fluid, viscosities, given
-     * velocities and strokes, who is held, pinned or spun (sd_hash_add_row). All but the last are found
-     * when somebody may ask for them: a run ends, or a restart file is written */
-    double causes[CAUSES] = {0.0};
   } last;
-  bool causes_due = false;
+  Causes causes;
   Stamp turns_begun;
   bool from_file = false;
 
@@ -108,11 +104,7 @@ class FixStokesDynamicsOverdamped : public RowsFix {
   const HydrodynamicsOf hydrodynamics{
       voice, "there is no pair_style stokes_dynamics with the settings of the fluid"};
   bool goes_on(const Hydrodynamics &) const;
-  void find_causes(const Hydrodynamics &, double *causes) const;
-  bool causes_stand(const Hydrodynamics &, int which = CAUSES) const;
-  void note_causes(const Hydrodynamics &);
-  void find_kinds(const Hydrodynamics &, double *kinds) const;
-  void forget_before_change(const Hydrodynamics &);
+  void forget_before();
   void set_step(double dt);
   void set_up();
   void announce();

@@ -19,7 +19,7 @@ using namespace StokesDyn;
 void FixStokesDynamicsOverdamped::find_noisy_velocities(Hydrodynamics &hydro, const Solve::ToAtom &take)
 {
   const Given known = given();
-  const Solve::Draw draw = noise.how_to_draw(hydro);
+  const SolveNoise::Draw draw = noise.how_to_draw(hydro);
   hydro.draw(known, draw);
   if (ComputeStokesDynamicsStress::wants_low(lmp)) {
     hydro.stress_of_noise(noise.tolerance_of_solve(), moments_of_noise);

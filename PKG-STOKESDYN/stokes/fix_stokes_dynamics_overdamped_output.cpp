@@ -40,6 +40,12 @@ void FixStokesDynamicsOverdamped::note_left()
   left = {dissipation(), fastest()};
 }
 
+void FixStokesDynamicsOverdamped::post_run()
+{
+  causes.note(hydrodynamics());
+  note_left();
+}
+
 double FixStokesDynamicsOverdamped::compute_vector(int k)
 {
   hydrodynamics();    // an error if there is none
@@ -166,7 +172,7 @@ double FixStokesDynamicsOverdamped::ideal_pressure() const
 
 void FixStokesDynamicsOverdamped::write_state(NamedState &)
 {
-  if (causes_due) note_causes(hydrodynamics());
+  if (causes.due) causes.note(hydrodynamics());
 }
 
 std::vector<SavedNumbers> FixStokesDynamicsOverdamped::saved()
@@ -175,5 +181,5 @@ std::vector<SavedNumbers> FixStokesDynamicsOverdamped::saved()
           {"dt", &last.dt},
           {"next_dt", &last.next_dt},
           {"atoms", &last.atoms},
-          {"causes", last.causes, CAUSES}};
+          {"causes", causes.prints, Causes::ALL}};
 }

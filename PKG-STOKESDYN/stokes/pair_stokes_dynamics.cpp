@@ -213,10 +213,7 @@ void PairStokesDynamics::init_style()
 
   hydro.init();
   // Here and not in the constructor: in read_restart, what the file holds for this fix is not known yet.
-  const Shells::Settings &shells = hydro.settings.shells;
-  const int points = shells.on() && hydro.settings.warm_start ? shells.points : 0;
-  const int most = points > 0 && !shells.alike() ? shells.most : 0;
-  State *state = State::provide(lmp, scene.rotation, hydro.settings.history(), hydro.settings.lines(), points, most);
+  State *state = State::provide(lmp, hydro.settings);
   state->settings_are(words_of_now());
   state->rigid = hydro.settings.rigid.on;
   look_for_fixes();

@@ -1,6 +1,6 @@
 #include "body_scene.h"
 
-#include "keywords.h"
+#include "ambient.h"
 #include "scene_at_boundary.h"
 
 #include "sd_linear.h"
@@ -130,6 +130,16 @@ void BodyScene::add_free(int k)
     loner.push_back(k);
 }
 
+/* Of its spheres, in the pose that it has */
+void BodyScene::find_arms(const ClumpPoses::Clump &clump, std::vector<double> &arms) const
+{
+  const sd_shape &shape = poses.shape(clump).shape;
+  for (int k = 0; k < shape.n; k++) {
+    const size_t row = scene.row_of_member((int) poses.member_of(clump, k));
+    sd_multiply3(clump.pose, shape.x + 3 * (size_t) k, &arms[3 * row]);
+  }
+}
+
 void BodyScene::add(const ClumpPoses::Clump &clump)
 {
   const ClumpShape &is = poses.shape(clump);
@@ -139,8 +149,8 @@ void BodyScene::add(const ClumpPoses::Clump &clump)
     const int row = scene.row_of_member((int) poses.member_of(clump, k));
     rows.push_back(row);
     whole[row] = loner.size() + shaped.size();
-    sd_multiply3(clump.pose, is.shape.x + 3 * (size_t) k, &arm[3 * (size_t) row]);
   }
+  find_arms(clump, arm);
   if (shells.on()) {
     const sd_multiblob_shape &shape = points_of(clump);
     double turn[9];
@@ -186,20 +196,14 @@ void BodyScene::stand_films()
   lubrication.place(scene, &ambient);
   if (!rigid.on) return;
   film_arm.assign(3 * (size_t) scene.size() + 3, 0.0);
-  for (const ClumpPoses::Clump &clump : poses.clumps()) {
-    const ClumpShape &is = poses.shape(clump);
-    for (int k = 0; k < is.shape.n; k++) {
-      const size_t row = scene.row_of_member((int) poses.member_of(clump, k));
-      sd_multiply3(clump.pose, is.shape.x + 3 * (size_t) k, &film_arm[3 * row]);
-    }
-  }
+  for (const ClumpPoses::Clump &clump : poses.clumps()) find_arms(clump, film_arm);
 }
 
-/* u = 0: nobody sees anybody */
+/* u = 0 at these points: nobody sees anybody */
 static sd_status nobody(void *ctx, const double * /*F*/, double *out)
 {
-  const sd_mobility_scene *scene = static_cast<sd_mobility_scene *>(ctx);
-  std::fill_n(out, (size_t) scene->how.width * scene->n, 0.0);
+  const sd_rigid *points = static_cast<sd_rigid *>(ctx);
+  std::fill_n(out, (size_t) points->width * points->n, 0.0);
   return SD_OK;
 }
 
@@ -208,8 +212,6 @@ void BodyScene::put_together()
   const int n = scene.size(), width = scene.width();
   const bool sees = engine.anybody_sees();
   const bool clumps = rigid.on;    // not one, on any rank: every sphere is a body, in the order of rows
-  alone.how.width = shells.on() ? 3 : width;
-  alone.n = n;
   bodies = {};
   bodies.lone = loner.size();
   bodies.loner = loner.data();
@@ -221,7 +223,7 @@ void BodyScene::put_together()
   bodies.film_arm = film_arm.empty() ? nullptr : film_arm.data();
   bodies.D = resistance.data();
   bodies.apply = sees ? sd_mobility_apply : nobody;
-  bodies.apply_ctx = sees ? (void *) engine.mobility() : &alone;
+  bodies.apply_ctx = sees ? (void *) engine.mobility() : &bodies.points;
   bodies.world = engine.ranks();
   if (shells.on()) put_points();
 }

@@ -8,7 +8,6 @@
 #ifndef SD_BODY_SCENE_H
 #define SD_BODY_SCENE_H
 
-#include "ambient.h"
 #include "callback.h"
 #include "clump_poses.h"
 #include "engine.h"
@@ -111,8 +110,6 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   std::vector<char> known;
   /* near a wall: blocks of the bodies where they stand */
   std::deque<Owned<sd_body_shape, sd_body_shape_free>> standing;
-  /* where nobody sees anybody */
-  sd_mobility_scene alone = {};
   /* with shells, by points: sphere, from its centre; by spheres: velocity of the fluid, its gradient,
    * and its second derivatives or nothing */
   std::vector<int> sphere;
@@ -125,6 +122,7 @@ class BodyScene : protected LAMMPS_NS::Pointers {
   void arrange();
   void add_free(int row);
   void add(const ClumpPoses::Clump &clump);
+  void find_arms(const ClumpPoses::Clump &clump, std::vector<double> &arms) const;
   void add_points(const sd_multiblob_shape &shape, const std::vector<int> &rows);
   const sd_multiblob_shape &points_of(const ClumpPoses::Clump &clump) const;
   /* near a wall no body moves by itself as it does in open space */

@@ -1,6 +1,8 @@
 /* Of body_scene: spheres as shells of points (keyword multiblob): where the points stand, and what flows there. */
 #include "body_scene.h"
 
+#include "ambient.h"
+
 #include "sd_flow_points.h"
 #include "sd_linear.h"
 
@@ -86,7 +88,6 @@ void BodyScene::put_points()
   faces = {shells.faces(), of_points.spheres.turn, whole_ones, of_points.spheres.kind,
            of_points.spheres.first};
   bodies.faces = &faces;
-  alone.n = all;
   bodies.add = sd_multiblob_add;
   bodies.add_ctx = &of_points;
 }

@@ -1,5 +1,6 @@
 #include "clump_poses.h"
 
+#include "ambient.h"
 #include "copy.h"
 #include "keywords.h"
 

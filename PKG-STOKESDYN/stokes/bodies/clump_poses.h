@@ -5,7 +5,6 @@
 #ifndef SD_CLUMP_POSES_H
 #define SD_CLUMP_POSES_H
 
-#include "ambient.h"
 #include "pointers.h"
 #include "rigid_clumps.h"
 #include "whole_clumps.h"
@@ -52,6 +51,8 @@ struct Given {
       std::fill_n(FT, 6, 0.0);
   }
 };
+
+class Ambient;
 
 class ClumpPoses : protected LAMMPS_NS::Pointers {
  public:

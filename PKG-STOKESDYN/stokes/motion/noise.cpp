@@ -138,7 +138,7 @@ void Noise::draw_together(Hydrodynamics &hydro, size_t width, const ToAtom &take
   hydro.scene.to_atoms((int) width, y.data(), take);
 }
 
-Solve::Draw Noise::how_to_draw(const Hydrodynamics &hydro)
+SolveNoise::Draw Noise::how_to_draw(const Hydrodynamics &hydro)
 {
   find_temperature(hydro);
   const auto told = [this](sd_status status, const sd_noise_report &report, bool in_parts) {

@@ -2,7 +2,7 @@
  * lone clumps, with the mobility that velocities follow from, or a random slip of all points.
  *
  *   step = sqrt(2 kT dt) y,     y of covariance M           where the mobility has no drift
- *   slip = sqrt(2 kT/dt) y,     y of covariance M'          scheme midpoint (solve.h)
+ *   slip = sqrt(2 kT/dt) y,     y of covariance M'          scheme midpoint (solve_noise.h)
  *
  * Numbers are drawn where velocities are found, at the positions of that moment, and depend on atom
  * IDs, the step and the seed alone: nothing is kept for restarts, and a second setup draws the
@@ -12,7 +12,7 @@
 
 #include "field.h"
 #include "pointers.h"
-#include "solve.h"
+#include "solve_noise.h"
 
 #include "sd_noise_spheres.h"
 #include "sd_random.h"
@@ -56,7 +56,7 @@ class Noise : protected LAMMPS_NS::Pointers {
   using ToAtom = std::function<void(int i, const double *y)>;
   void draw(Hydrodynamics &hydro, size_t width, const ToAtom &take);
   /* For the solve of this step, in scheme midpoint. Errors as of draw(). */
-  Solve::Draw how_to_draw(const Hydrodynamics &hydro);
+  SolveNoise::Draw how_to_draw(const Hydrodynamics &hydro);
   /* To which that solve is made: slow modes of velocities are off by less than those of the root */
   double tolerance_of_solve() const { return tolerance / 3.0; }
   /* sqrt(2 kT dt) for a step dt from there */

@@ -2,9 +2,7 @@
 
 #include "lattice.h"
 #include "ranks.h"
-#include "scene.h"
 #include "scene_at_boundary.h"
-#include "shells.h"
 
 #include "sd_ewald_cost.h"
 
@@ -36,26 +34,6 @@ sd_mobility_how FarField::how() const
   return {settings.law(), width(), &ewald, &second_level, &slab, harmless_error()};
 }
 
-double FarField::reach() const
-{
-  return ewald.reach + 2.0 * extent(scene.largest());
-}
-
-int FarField::width() const
-{
-  return settings.rotation && !shells.on() ? 6 : 3;
-}
-
-double FarField::extent(double a) const
-{
-  return shells.on() ? shells.extent(a) : 0.0;
-}
-
-double FarField::grain(double a) const
-{
-  return shells.on() ? shells.grain(a) : a;
-}
-
 /* Noise, too, asks for more digits than the tolerance says: a root goes on where a solve has ended. */
 double FarField::harmless_error() const
 {
@@ -79,7 +57,7 @@ sd_ewald_sizes FarField::sizes_of_all(double largest) const
   sd_ewald_sizes s = {};
   s.all.largest = largest;
   const double *a = scene.local().a;
-  for (int k = 0; k < scene.size(); k++) sd_ewald_count(&s, grain(a[k]), shells.on() ? shells.points(a[k]) : 1);
+  for (int k = 0; k < scene.size(); k++) sd_ewald_count(&s, shells.grain(a[k]), shells.points(a[k]));
   static_assert(sizeof(s) == (1 + SD_EWALD_OCTAVES) * 4 * sizeof(double), "numbers alone");
   const int numbers = sizeof(s) / sizeof(double);
   sd_ewald_sizes most = s;
@@ -97,8 +75,8 @@ sd_ewald_sizes FarField::measure(sd_ewald_box &box) const
   const sd_spheres s = scene.local();
   double most[7] = {0.0, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY};
   for (int k = 0; k < scene.size(); k++) {
-    const double outside = extent(s.a[k]);
-    most[0] = std::max(most[0], grain(s.a[k]));
+    const double outside = shells.extent(s.a[k]);
+    most[0] = std::max(most[0], shells.grain(s.a[k]));
     for (int d = 0; d < 3; d++) {
       most[1 + d] = std::max(most[1 + d], outside - s.x[3 * k + d]);
       most[4 + d] = std::max(most[4 + d], outside + s.x[3 * k + d]);
@@ -196,10 +174,10 @@ sd_slab_spheres FarField::measure_slab(const sd_slab_walls &walls) const
   const sd_spheres s = scene.local();
   double bounds[4] = {0.0, 0.0, -INFINITY, -INFINITY};    // largest radius, 1/smallest; heights
   for (int k = 0; k < scene.size(); k++) {
-    const double height = sd_slab_height(&walls, s.x + 3 * (size_t) k), outside = extent(s.a[k]);
+    const double height = sd_slab_height(&walls, s.x + 3 * (size_t) k), outside = shells.extent(s.a[k]);
     if (!(s.a[k] > 0.0)) continue;
-    bounds[0] = std::max(bounds[0], grain(s.a[k]));
-    bounds[1] = std::max(bounds[1], 1.0 / grain(s.a[k]));
+    bounds[0] = std::max(bounds[0], shells.grain(s.a[k]));
+    bounds[1] = std::max(bounds[1], 1.0 / shells.grain(s.a[k]));
     bounds[2] = std::max(bounds[2], outside - height);
     bounds[3] = std::max(bounds[3], outside + height);
   }

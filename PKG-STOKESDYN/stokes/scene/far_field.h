@@ -3,10 +3,9 @@
 #ifndef SD_FAR_FIELD_H
 #define SD_FAR_FIELD_H
 
-#include "epochs.h"
-#include "keywords.h"
 #include "pointers.h"
-#include "scene_settings.h"
+#include "scene.h"
+#include "shells.h"
 
 #include "sd_mobility.h"
 
@@ -14,9 +13,6 @@
 #include <vector>
 
 namespace StokesDyn {
-
-class Scene;
-class Shells;
 
 class FarField : protected LAMMPS_NS::Pointers {
  public:
@@ -37,7 +33,7 @@ class FarField : protected LAMMPS_NS::Pointers {
   const sd_ewald &splitting() const { return ewald; }
   /* points; up to where spheres have near parts with each other */
   double count() const { return ewald.count + second_level.count; }
-  double reach() const;
+  double reach() const { return ewald.reach + 2.0 * shells.extent(scene.largest()); }
   /* The parameters, once a run and when they are others than those told last. */
   void tell();
   /* The box around an open cloud, or the heights of a slab: six numbers to keep */
@@ -57,10 +53,7 @@ class FarField : protected LAMMPS_NS::Pointers {
   std::string said;
   Stamp told;
 
-  int width() const;
-  /* how far a sphere's points are from its centre; their radius */
-  double extent(double a) const;
-  double grain(double a) const;
+  int width() const { return shells.on() ? 3 : scene.width(); }
   bool periodic() const;
   /* of a product, for sd_mobility_how.tolerance; 0: a solve goes on below the rounding of floats */
   double harmless_error() const;

@@ -1,7 +1,7 @@
 /* From LAMMPS atoms to the core's arrays and back: which spheres take part, and who has the row of each.
  *
  * Vectors of the core have a row of 3 numbers (6 with rotation) for each sphere that takes part.
- * Where clumps must be whole (Settings::whole) those of a clump are all on the rank that owns it,
+ * Where clumps must be whole (SceneSettings::whole) those of a clump are all on the rank that owns it,
  * side by side (whole_clumps.h), after the lone spheres of this rank; else every rank has the rows
  * of its own atoms. Atoms that take no part have none, so they cost nothing. Who sees whom, and copies of
  * those that are near behind the rows, is a matter of the engine (engine.h). */

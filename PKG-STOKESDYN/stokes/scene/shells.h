@@ -14,7 +14,6 @@
 #include "keywords.h"
 #include "pointers.h"
 
-#include "sd_film.h"
 #include "sd_multiblob_shape.h"
 #include "sd_product.h"
 #include "sd_squirmer.h"
@@ -44,7 +43,7 @@ class Shells : protected LAMMPS_NS::Pointers {
   {
   }
 
-  /* Otherwise spheres are points, and nobody asks for more. */
+  /* Otherwise each sphere is a point. */
   bool on() const { return settings.on(); }
   /* The settings are new. */
   void make();
@@ -73,10 +72,11 @@ class Shells : protected LAMMPS_NS::Pointers {
   const sd_multiblob_shape &free_sphere(int kind) const { return *lone[kind]; }
   const sd_faces_pattern *faces() const { return patterns.data(); }
   const sd_squirmer &squirmer(int kind) const { return swimmers[kind]; }
-  int points(double a) const { return model_of(a).n; }
-  /* How far points reach from the centre of a sphere, and their radius */
-  double extent(double a) const { return model_of(a).radius * a; }
-  double grain(double a) const { return model_of(a).point * a; }
+  /* How many points, how far they reach from the centre of a sphere, and their radius; also of one that is
+   * itself its only point */
+  int points(double a) const { return on() ? model_of(a).n : 1; }
+  double extent(double a) const { return on() ? model_of(a).radius * a : 0.0; }
+  double grain(double a) const { return on() ? model_of(a).point * a : a; }
   /* By how much sums over all points may be less accurate than those over spheres: the least of all shells */
   double looser() const;
 

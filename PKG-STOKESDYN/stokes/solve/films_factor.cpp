@@ -1,12 +1,9 @@
 #include "films_factor.h"
 
-#include "lammps_compat.h"
-
 #include "atom.h"
 #include "domain.h"
 
 #include "sd_hash.h"
-#include "sd_preconditioner.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,33 +32,21 @@ void FilmsFactor::find_numbers()
   MPI_Allreduce(MPI_IN_PLACE, &numbers[PRINT], 2, MPI_DOUBLE, MPI_SUM, world);
 }
 
-/* From where the factor was made to where the sphere is, to the next image */
-void FilmsFactor::moved(const double *place, int i, double d[3]) const
-{
-  for (int c = 0; c < 3; c++) d[c] = atom->x[i][c] - place[c];
-  Compat::minimum_image(domain, d);
-}
-
 /* Does the memory say where a factor of these spheres was made, and was that near? */
-bool FilmsFactor::known(const AtomRows &places, const std::vector<double> &made_of) const
+bool FilmsFactor::known(const FixStokesDynamicsState &memory) const
 {
-  double sums[SD_MOVED + 1] = {0.0}, d[3];
-  for (int i : scene.who()) {
-    sums[SD_MOVED] += !places.has(i);
-    moved(places[i], i, d);
-    sd_moved_add(sums, d, atom->radius[i]);
-  }
-  MPI_Allreduce(MPI_IN_PLACE, sums, SD_MOVED + 1, MPI_DOUBLE, MPI_SUM, world);
-  return sums[SD_MOVED] == 0.0 && sd_moved_far(sums) < FAR && made_of.size() == NUMBERS &&
+  const std::vector<double> &made_of = memory.global.made_of;
+  double sums[SD_MOVED];
+  return memory.moved_since_made(scene.who(), sums) && sd_moved_far(sums) < FAR && made_of.size() == NUMBERS &&
       std::equal(made_of.begin(), made_of.begin() + EDGES, numbers.begin()) &&
       std::fabs(made_of[PRINT] - numbers[PRINT]) <= 1e-8 * numbers[SIZE];
 }
 
-void FilmsFactor::make_at(const AtomRows &places)
+void FilmsFactor::make_there(const FixStokesDynamicsState &memory)
 {
   const std::vector<double> then = scene.rows(3, [&](int i, double *out) {
     double d[3];
-    moved(places[i], i, d);
+    memory.from_made(i, d);
     for (int c = 0; c < 3; c++) out[c] = atom->x[i][c] - d[c];
   });
   const size_t of_bodies = SD_TIE_OF_BODY * (size_t) sd_bodies_count(&bodies.bodies);
@@ -72,22 +57,20 @@ void FilmsFactor::make_at(const AtomRows &places)
   bodies.films_back();
 }
 
-void FilmsFactor::recall(const AtomRows &places, const std::vector<double> &made_of)
+void FilmsFactor::recall(const FixStokesDynamicsState &memory)
 {
   if (!bodies.films_by_places()) return forget();
   find_numbers();
-  if (!known(places, made_of)) return;
-  if (!rows.is(scene.all_epochs().rows)) make_at(places);
+  if (!known(memory)) return;
+  if (!rows.is(scene.all_epochs().rows)) make_there(memory);
   bodies.bodies.tie->keep = 1;
 }
 
-void FilmsFactor::note(AtomRows &places, std::vector<double> &made_of)
+void FilmsFactor::note(FixStokesDynamicsState &memory)
 {
   if (!bodies.films_by_places()) return;
   rows.set(scene.all_epochs().rows);
-  if (!bodies.bodies.tie->anew) return;
-  made_of = numbers;
-  for (int i : scene.who()) std::copy_n(atom->x[i], 3, places.writable(i));
+  if (bodies.bodies.tie->anew) memory.made_here(scene.who(), numbers);
 }
 
 }    // namespace StokesDyn

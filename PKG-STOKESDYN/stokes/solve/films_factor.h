@@ -7,8 +7,8 @@
 #define SD_FILMS_FACTOR_H
 
 #include "body_scene.h"
+#include "fix_stokes_dynamics_state.h"
 #include "pointers.h"
-#include "rows_fix.h"
 
 #include <vector>
 
@@ -21,11 +21,10 @@ class FilmsFactor : protected LAMMPS_NS::Pointers {
   {
   }
 
-  /* Before a solve, on all ranks together: the bodies have been assembled. places: 3 numbers of an atom,
-   * where it stood when the factor was made; made_of: what else that was of. Both are the caller's to keep,
-   * and note() brings them up to date after the solve. */
-  void recall(const AtomRows &places, const std::vector<double> &made_of);
-  void note(AtomRows &places, std::vector<double> &made_of);
+  /* Before a solve, on all ranks together: the bodies have been assembled. And after it: where the factor
+   * was made to the memory, if it was made anew */
+  void recall(const FixStokesDynamicsState &memory);
+  void note(FixStokesDynamicsState &memory);
   /* Another factor is made in between. */
   void forget() { rows.never(); }
 
@@ -38,9 +37,8 @@ class FilmsFactor : protected LAMMPS_NS::Pointers {
   std::vector<double> numbers;
 
   void find_numbers();
-  void moved(const double *place, int i, double d[3]) const;
-  bool known(const AtomRows &places, const std::vector<double> &made_of) const;
-  void make_at(const AtomRows &places);
+  bool known(const FixStokesDynamicsState &memory) const;
+  void make_there(const FixStokesDynamicsState &memory);
 };
 
 }    // namespace StokesDyn

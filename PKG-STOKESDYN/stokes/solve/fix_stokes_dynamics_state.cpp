@@ -1,7 +1,12 @@
 #include "fix_stokes_dynamics_state.h"
 
+#include "copy.h"
+#include "lammps_compat.h"
 #include "own_fix.h"
 #include "ranks.h"
+#include "settings.h"
+
+#include "sd_linear.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -30,15 +35,18 @@ void FixStokesDynamicsState::take_away(LAMMPS *lmp)
   memory_of(lmp).take_away();
 }
 
-FixStokesDynamicsState *FixStokesDynamicsState::provide(LAMMPS *lmp, bool rotation, bool history, bool lines,
-                                                        int points, int most)
+FixStokesDynamicsState *FixStokesDynamicsState::provide(LAMMPS *lmp, const StokesSettings &settings)
 {
+  const Shells::Settings &shells = settings.shells;
+  const int points = shells.on() && settings.warm_start ? shells.points : 0;
+  const int numbers[] = {settings.scene.rotation, settings.history(), settings.lines(), points,
+                         points > 0 && !shells.alike() ? shells.most : 0};
   FixStokesDynamicsState *fix = find(lmp);
-  if (fix && fix->rotation == rotation && fix->history == history && fix->lines == lines &&
-      fix->shell_points == points && fix->most_points == most)
+  if (fix && fix->rotation == numbers[0] && fix->history == numbers[1] && fix->lines == numbers[2] &&
+      fix->shell_points == numbers[3] && fix->most_points == numbers[4])
     return fix;
-  std::string words = std::to_string(rotation);
-  for (int more : {(int) history, (int) lines, points, most}) words += " " + std::to_string(more);
+  std::string words;
+  for (int of : numbers) words += std::to_string(of) + " ";
   return static_cast<FixStokesDynamicsState *>(memory_of(lmp).make(words));
 }
 
@@ -58,6 +66,31 @@ FixStokesDynamicsState::FixStokesDynamicsState(LAMMPS *lmp, int narg, char **arg
   std::vector<RowsOfAtoms *> all = {&rows, &made_at, &left}, moving;
   if (has_larger()) moving = {&larger[0], &larger[1], &larger[2]};
   keep(all, nullptr, true, NO_BORDERS, moving);
+}
+
+void FixStokesDynamicsState::made_here(const std::vector<int> &who, const std::vector<double> &of)
+{
+  global.made_of = of;
+  for (int i : who) copy<3>(atom->x[i], made_at.writable(i));
+}
+
+void FixStokesDynamicsState::from_made(int i, double d[3]) const
+{
+  sd_minus(atom->x[i], made_at[i], d);
+  Compat::minimum_image(domain, d);
+}
+
+bool FixStokesDynamicsState::moved_since_made(const std::vector<int> &who, double sums[SD_MOVED]) const
+{
+  double all[SD_MOVED + 1] = {0.0}, d[3];
+  for (int i : who) {
+    all[SD_MOVED] += !made_at.has(i);
+    from_made(i, d);
+    sd_moved_add(all, d, atom->radius[i]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, all, SD_MOVED + 1, MPI_DOUBLE, MPI_SUM, world);
+  copy<SD_MOVED>(all, sums);
+  return all[SD_MOVED] == 0.0;
 }
 
 void FixStokesDynamicsState::erase(int i)
@@ -236,7 +269,7 @@ void FixStokesDynamicsState::write_state(NamedState &out)
 {
   if (within_run()) present_box(global.box);
   out.put("time", time());
-  out.put("places_box", global.made_in_box);
+  out.put("places_box", global.made_of);
   out.put("loose", global.loose);
   out.put("members", members_now());
   out.put("open_box", global.open_box);
@@ -250,7 +283,7 @@ void FixStokesDynamicsState::write_state(NamedState &out)
 void FixStokesDynamicsState::read_state(const NamedState &in)
 {
   global.time_before = in.get("time", time()) - lammps_time(update);
-  global.made_in_box = in.get("places_box");
+  global.made_of = in.get("places_box");
   global.loose = in.get("loose");
   global.members = in.get("members");
   global.open_box = in.get("open_box");

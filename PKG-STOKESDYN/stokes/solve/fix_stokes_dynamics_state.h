@@ -14,10 +14,14 @@
 #include "shells.h"
 #include "time_step_guard.h"
 
+#include "sd_preconditioner.h"
+
 #include <cstdint>
 #include <vector>
 
 namespace StokesDyn {
+
+struct StokesSettings;
 
 class FixStokesDynamicsState : public RowsFix {
  public:
@@ -27,8 +31,7 @@ class FixStokesDynamicsState : public RowsFix {
   /* The one of this LAMMPS, nullptr if there is none. Error: a fix of the user's has its ID. */
   static FixStokesDynamicsState *find(LAMMPS_NS::LAMMPS *lmp);
   /* The same, made anew unless it is of this kind. */
-  static FixStokesDynamicsState *provide(LAMMPS_NS::LAMMPS *lmp, bool rotation, bool history, bool lines,
-                                         int points, int most);
+  static FixStokesDynamicsState *provide(LAMMPS_NS::LAMMPS *lmp, const StokesSettings &settings);
   /* If it is there; in destructors */
   static void take_away(LAMMPS_NS::LAMMPS *lmp);
 
@@ -66,8 +69,14 @@ class FixStokesDynamicsState : public RowsFix {
   AtomRows rows;
   /* Atom i has none of them. */
   void erase(int i);
-  /* where spheres stood when the preconditioner was made (preconditioner.h) */
+  /* Where the preconditioner, or the factor of films, was made (preconditioner.h, films_factor.h): of these
+   * atoms, at their places of then; and what else it was of, global.made_of */
+  void made_here(const std::vector<int> &who, const std::vector<double> &of);
+  /* d [3] from there to where atom i is, to the nearest image; and how far these all have moved since, as
+   * sd_moved_add sums it, on all ranks together. false: one of them was not there */
   AtomRows made_at;
+  void from_made(int i, double d[3]) const;
+  bool moved_since_made(const std::vector<int> &who, double sums[SD_MOVED]) const;
   /* are clumps rigid? Then a restart file says how many atoms each molecule has */
   bool rigid = false;
 
@@ -103,7 +112,7 @@ class FixStokesDynamicsState : public RowsFix {
     uint64_t settings = 0;
     /* kept for those who know what they mean */
     TimeStepGuard::State guard;
-    std::vector<double> made_in_box, loose, open_box;
+    std::vector<double> made_of, loose, open_box;
     /* as a restart file says, until a run has looked (RigidClumps::set_members) */
     std::vector<double> members;
   } global;

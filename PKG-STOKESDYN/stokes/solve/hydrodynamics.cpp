@@ -27,7 +27,8 @@ Hydrodynamics::Hydrodynamics(LAMMPS *lmp) :
     rigid(voice, scene.whole, epochs, settings.rigid), lubrication(voice, settings.lubrication, shells),
     clump_poses(lmp, scene.whole, epochs, ambient, rigid, given),
     bodies(voice, scene, engine, shells, ambient, clump_poses, lubrication),
-    solver(lmp, scene, engine, bodies, shells, settings), guard(voice)
+    solver(lmp, scene, engine, bodies, shells, settings),
+    random(voice, scene, engine, bodies, shells, settings), guard(voice)
 {
 }
 
@@ -100,7 +101,7 @@ void Hydrodynamics::begin(Moment moment)
 /* The rows of this step's spheres where they stand now, and their shells with them */
 void Hydrodynamics::stand()
 {
-  scene.stand(solved_atoms);
+  scene.stand(solved_atoms());
   rows_stand.set(epochs.step);
   if (!shells.on()) return;
   fit_shells();
@@ -138,7 +139,6 @@ void Hydrodynamics::new_run(bool as_left)
 void Hydrodynamics::clumps()
 {
   if (!settings.rigid.each_alone()) {
-    solved_atoms = ambient.who();
     if (settings.rigid.on) clump_poses.find();    // are they whole and rigid?
     return;
   }
@@ -152,15 +152,15 @@ void Hydrodynamics::clumps()
     for (size_t d = 0; d < m; d++)
       row[State::at(State::VPRIME, d)] = F[d] / ambient.resistance(i, d) - s[d];
   };
-  std::vector<char> left_over;
+  std::vector<char> others;
   clump_poses.find();
-  clump_poses.drag(take, left_over);
+  clump_poses.drag(take, others);
   memory->global.loose = rigid.loose();
-  solved_atoms.clear();
+  left_over.clear();
   for (int i : ambient.who())
-    if (left_over[i]) solved_atoms.push_back(i);
+    if (others[i]) left_over.push_back(i);
   if (rigid.any_loose()) return;
-  for (int i : solved_atoms) {    // lone spheres: nobody disturbs the fluid there
+  for (int i : left_over) {    // lone spheres: nobody disturbs the fluid there
     double *row = memory->rows.writable(i);
     for (size_t d = 0; d < m; d++) row[State::at(State::VPRIME, d)] = 0.0;
   }
@@ -171,7 +171,7 @@ void Hydrodynamics::clumps()
 void Hydrodynamics::drag()
 {
   const size_t m = scene.width();
-  for (int i : solved_atoms) {
+  for (int i : solved_atoms()) {
     const double k[2] = {ambient.drag(i), ambient.spin(i)};
     double *row = memory->rows.writable(i), s[6];
     ambient.slip(i, s);
@@ -199,7 +199,6 @@ void Hydrodynamics::velocities(const Solve::ToAtom &take, const Given &known, do
   State::Global &global = memory->global;
   sd_solve_report report = {};
   sd_status status = SD_OK;
-  solved_atoms = ambient.who();
   given = known;
   if (settings.rigid.each_alone()) {
     clump_poses.find();
@@ -207,7 +206,7 @@ void Hydrodynamics::velocities(const Solve::ToAtom &take, const Given &known, do
   } else
     status = find_motions(take, drawn, report);
   if (given_rows.first_in(epochs.selection))    // those that have a row are known to have moved here
-    for (int i : solved_atoms) memory->rows.writable(i);
+    for (int i : ambient.who()) memory->rows.writable(i);
   // v' is none of this.
   global.last_step = update->ntimestep;
   global.last_solve = -1;
@@ -290,11 +289,9 @@ sd_status Hydrodynamics::find_motions(const Solve::ToAtom &take, double drawn, s
   const bool noisy = drawn > 0.0;
   assemble(noisy ? BodyScene::STANDING_FILMS : BodyScene::FILMS);
   if (noisy)
-    solver.push();
-  else {
-    solver.forget_noise();
-    moments_left.clear();
-  }
+    random.push();
+  else
+    random.forget();
   const Guess::Question asked = noisy ? Guess::NOISY_MOTIONS : Guess::MOTIONS;
   const sd_status status =
       solver.run({asked, std::max(settings.tolerance, drawn), settings.max_iter}, report);
@@ -389,7 +386,7 @@ double Hydrodynamics::memory_usage() const
   const double films = films_v.capacity() + films_power.capacity();
   return ambient.memory_usage() + scene.memory_usage() + engine.memory_usage() + shells.memory_usage() +
       rigid.memory_usage() + lubrication.memory_usage() + clump_poses.memory_usage() +
-      bodies.memory_usage() + solver.memory_usage() + sizeof(double) * films;
+      bodies.memory_usage() + solver.memory_usage() + random.memory_usage() + sizeof(double) * films;
 }
 
 }    // namespace StokesDyn

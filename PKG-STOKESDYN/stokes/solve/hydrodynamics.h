@@ -22,6 +22,7 @@
 #include "scene.h"
 #include "settings.h"
 #include "solve.h"
+#include "solve_noise.h"
 #include "time_step_guard.h"
 
 #include <string>
@@ -90,14 +91,14 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   // --- a step with noise, where spheres interact: at each place begin() and one of these, draw() first and
   // velocities() last (hydrodynamics_noise.cpp)
 
-  void draw(const Given &known, const Solve::Draw &draw);
+  void draw(const Given &known, const SolveNoise::Draw &draw);
   /* Behind draw(), at the same place: stress() of that noise alone, whose mean is 0, to this tolerance */
   void stress_of_noise(double tolerance, std::vector<double> &of_atoms);
-  Moves half_step_of_points() const { return moves_of(solver.of_points); }
-  Moves half_step_of_films() const { return moves_of(solver.of_films); }
+  Moves half_step_of_points() const { return moves_of(random.of_points); }
+  Moves half_step_of_films() const { return moves_of(random.of_films); }
   /* Is difference() needed, at x + W and x - W with the signs 1 and -1? */
-  bool needs_differences() const { return solver.needs_differences(); }
-  Moves random_moves(const Solve::Draw &draw) { return moves_of(solver.random_moves(draw)); }
+  bool needs_differences() const { return random.needs_differences(); }
+  Moves random_moves(const SolveNoise::Draw &draw) { return moves_of(random.random_moves(draw)); }
   void difference(const Given &known, double sign);
   void films(const Given &known);
 
@@ -153,6 +154,7 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   ClumpPoses clump_poses;
   BodyScene bodies;
   Solve solver;
+  SolveNoise random;
   TimeStepGuard guard;
   /* in a run: what is looked at or said once */
   Stamp prepared, looked, warned_unconverged, warned_cut;
@@ -163,9 +165,13 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* first step of the run that the last step was of */
   LAMMPS_NS::bigint began = -1;
 
-  /* The atoms of this rank whose forces a solve finds: all that take part, without those of rigid clumps
-   * that move each by itself. The scene makes the rows of a solve of them. */
-  std::vector<int> solved_atoms;
+  /* The atoms of this rank whose forces a solve finds: all that take part, or, where rigid clumps have drags
+   * each by itself, those that these have left over. The scene makes the rows of a solve of them. */
+  const std::vector<int> &solved_atoms() const
+  {
+    return settings.rigid.each_alone() && !overdamped ? left_over : ambient.who();
+  }
+  std::vector<int> left_over;
   /* by rows: velocities of the spheres, as films know them */
   std::vector<double> films_v;
   /* [nlocal], or empty: of strain_power() */
@@ -201,8 +207,6 @@ class Hydrodynamics : protected LAMMPS_NS::Pointers {
   /* S [6 rows] += first moments of forces f [3 rows] on the spheres of clumps, about the centroid */
   void add_on_members(const std::vector<double> &f, double *S) const;
   void add_moments_left(double part);
-  /* [6 rows], or empty: what the mean of the first moments lacks, of the solve with noise */
-  std::vector<double> moments_left;
   FlowSources of_points_on_fluid();
   int algorithm() const    // of the next solve
   {

@@ -2,8 +2,6 @@
  * these in a step without a solve. */
 #include "hydrodynamics.h"
 
-#include "callback.h"
-
 #include "atom.h"
 #include "update.h"
 
@@ -43,7 +41,6 @@ void Hydrodynamics::keep_forces()
 void Hydrodynamics::stand_rows()
 {
   if (standing()) return;
-  solved_atoms = ambient.who();
   if (settings.rigid.on) clump_poses.find();
   stand();
 }

@@ -9,8 +9,6 @@
  */
 #include "hydrodynamics.h"
 
-#include "callback.h"
-
 #include "atom.h"
 
 #include <algorithm>
@@ -28,19 +26,17 @@ void Hydrodynamics::assemble(BodyScene::Films films)
   bodies.assemble(films);
 }
 
-void Hydrodynamics::draw(const Given &known, const Solve::Draw &draw)
+void Hydrodynamics::draw(const Given &known, const SolveNoise::Draw &draw)
 {
-  solved_atoms = ambient.who();
   given = known;
-  moments_left.clear();
   assemble(BodyScene::NOISY_FILMS);
-  solver.draw(draw);
+  random.draw(draw);
 }
 
 void Hydrodynamics::stress_of_noise(double tolerance, std::vector<double> &of_atoms)
 {
   sd_solve_report report = {};
-  solver.push_alone();
+  random.push_alone();
   const double loosest = std::max(settings.tolerance, tolerance);
   account_for(solver.run({Guess::NOISY_MOTIONS, loosest, settings.max_iter}, report), report);
   stress(of_atoms);
@@ -65,23 +61,23 @@ void Hydrodynamics::difference(const Given &known, double sign)
 {
   given = known;
   assemble();
-  solver.difference(sign);
-  if (shells.on()) add_moments_left(sign * solver.part());
+  random.difference(sign);
+  if (shells.on()) add_moments_left(sign * random.part());
 }
 
 /* Of bodies that turn the mean of first moments Q^T l lacks kT sum_k (d_k Q)^T A_k, as slip and load do. */
 void Hydrodynamics::add_moments_left(double part)
 {
   const Points now = points_that_stand();
-  const std::vector<double> &l = solver.forces_of_moves();
+  const std::vector<double> &l = random.forces_of_moves();
   const size_t n = scene.size();
   const int *first = shells.first_of_rows();
   std::vector<double> S(6 * n + 6, 0.0), f(3 * n + 3, 0.0);
   sd_multiblob_moments((int) n, first, now.r.data(), l.data(), S.data());
   sd_multiblob_forces((int) n, first, l.data(), f.data());
   add_on_members(f, S.data());
-  moments_left.resize(6 * n + 6, 0.0);
-  for (size_t j = 0; j < S.size(); j++) moments_left[j] += part * S[j];
+  random.moments_left.resize(6 * n + 6, 0.0);
+  for (size_t j = 0; j < S.size(); j++) random.moments_left[j] += part * S[j];
 }
 
 void Hydrodynamics::films(const Given &known)

@@ -3,8 +3,6 @@
 
 #include "callback.h"
 
-#include "sd_linear.h"
-
 #include "atom.h"
 #include "domain.h"
 
@@ -26,12 +24,11 @@ void Hydrodynamics::stress(std::vector<double> &of_atoms)
   std::vector<double> points(6 * n + 6, 0.0), films(6 * n + 6, 0.0), f(3 * n + 3);
   sd_multiblob_moments((int) n, shells.first_of_rows(), now.r.data(), now.l.data(), points.data());
   if (overdamped) {
-    const std::vector<double> &random = solver.random_forces();
-    sd_bodies_bonds(&bodies.bodies, solver.exerted.data(), bodies.F.data(), random.empty() ? nullptr : random.data(),
-                    f.data());
+    const double *of_noise = random.forces().empty() ? nullptr : random.forces().data();
+    sd_bodies_bonds(&bodies.bodies, solver.exerted.data(), bodies.F.data(), of_noise, f.data());
     add_on_members(f, points.data());
   }
-  for (size_t j = 0; j < moments_left.size(); j++) points[j] += moments_left[j];
+  for (size_t j = 0; j < random.moments_left.size(); j++) points[j] += random.moments_left[j];
   if (settings.lubrication.on) {
     const double *v = overdamped ? solver.v.data() : films_v.data();
     const sd_status status = sd_lubrication_stress(lubrication.matrix(), v, films.data());

@@ -1,7 +1,6 @@
 #include "preconditioner.h"
 
 #include "callback.h"
-#include "lammps_compat.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -56,11 +55,10 @@ bool Preconditioner::few() const
   return of_all() && scene.width() * count() <= FEW;
 }
 
-void Preconditioner::attach(sd_system &system, AtomRows &at, std::vector<double> &its_box)
+void Preconditioner::attach(sd_system &system, FixStokesDynamicsState &kept_in)
 {
   put_in.never();
-  places = &at;
-  box = &its_box;
+  memory = &kept_in;
   wanted = suited();
   if (!wanted) return forget();
   system.precondition = apply;
@@ -70,31 +68,19 @@ void Preconditioner::attach(sd_system &system, AtomRows &at, std::vector<double>
 /* On all ranks alike. */
 void Preconditioner::refresh_places()
 {
-  double sums[SD_MOVED + 1] = {0.0}, &without = sums[SD_MOVED];
-  for (int i : scene.who()) {
-    const double *was = (*places)[i];
-    double d[3] = {atom->x[i][0] - was[0], atom->x[i][1] - was[1], atom->x[i][2] - was[2]};
-    if (!places->has(i)) {
-      without++;
-      continue;
-    }
-    Compat::minimum_image(domain, d);
-    sd_moved_add(sums, d, atom->radius[i]);
-  }
-  MPI_Allreduce(MPI_IN_PLACE, sums, SD_MOVED + 1, MPI_DOUBLE, MPI_SUM, world);
+  double sums[SD_MOVED];
+  const bool known = memory->moved_since_made(scene.who(), sums);
   std::vector<double> now;
   if (wanted == &sd_precondition_waves)
     now = {domain->prd[0], domain->prd[1], domain->prd[2], domain->xy, domain->xz, domain->yz};
-  if (without == 0.0 && !sd_moved_too_far(sums) && *box == now) return;
-  *box = now;
-  for (int i : scene.who()) std::copy_n(atom->x[i], 3, places->writable(i));
+  if (!known || sd_moved_too_far(sums) || memory->global.made_of != now) memory->made_here(scene.who(), now);
 }
 
 /* x: where the spheres stood, in the order of the preconditioner's rows */
 void Preconditioner::find_positions()
 {
   std::vector<double> rows =
-      scene.rows(3, [this](int i, double *out) { std::copy_n((*places)[i], 3, out); });
+      scene.rows(3, [this](int i, double *out) { std::copy_n(memory->made_at[i], 3, out); });
   x.resize(3 * (size_t) count() + 3);
   if (of_all())
     engine.cloud.to_all(rows.data(), x.data(), 3);

@@ -13,8 +13,8 @@
 #define SD_PRECONDITIONER_GLUE_H
 
 #include "engine.h"
+#include "fix_stokes_dynamics_state.h"
 #include "pointers.h"
-#include "rows_fix.h"
 #include "scene.h"
 #include "settings.h"
 
@@ -33,9 +33,8 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
 
   void forget() { sd_preconditioner_free(&made); }
   /* Before a solve, after Engine::place(): puts the one that suits the scene into the system. It is
-   * made at its first use, since a warm start often needs none at all. places: 3 numbers of an
-   * atom, where it stood when it was made; box: of then. Both are the caller's to keep. */
-  void attach(sd_system &system, AtomRows &places, std::vector<double> &box);
+   * made at its first use, since a warm start often needs none at all. */
+  void attach(sd_system &system, FixStokesDynamicsState &memory);
   bool attached() const { return wanted != nullptr; }
   double memory_usage() const;
 
@@ -48,8 +47,7 @@ class Preconditioner : protected LAMMPS_NS::Pointers {
 
   // of this solve
   Stamp put_in;
-  AtomRows *places = nullptr;
-  std::vector<double> *box = nullptr;
+  FixStokesDynamicsState *memory = nullptr;
 
   std::vector<double> x, in, out;
   std::vector<long> first;

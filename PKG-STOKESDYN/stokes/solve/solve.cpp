@@ -13,15 +13,14 @@ namespace StokesDyn {
 Solve::Solve(LAMMPS *lmp, const Scene &scene, Engine &engine, BodyScene &bodies, const Shells &shells,
              const StokesSettings &settings) :
     Pointers(lmp), preconditioner(lmp, scene, engine, settings), guess(lmp, scene, engine, bodies, shells, settings),
-    scene(scene), engine(engine), bodies(bodies), shells(shells), settings(settings), factor(lmp, scene, bodies)
+    scene(scene), engine(engine), bodies(bodies), factor(lmp, scene, bodies)
 {
 }
 
 double Solve::memory_usage() const
 {
   double numbers = (double) room;
-  for (const auto *array : {&exerted, &v, &V, &l, &v_with_l, &drag, &spin, &work, &slip, &pushed, &slip_left,
-                            &load_left, &of_moves})
+  for (const auto *array : {&exerted, &v, &V, &l, &v_with_l, &drag, &spin, &work})
     numbers += (double) array->capacity();
   return sizeof(double) * numbers + preconditioner.memory_usage();
 }
@@ -36,9 +35,9 @@ sd_status Solve::run(const How &how, sd_solve_report &report)
     factor.forget();
     return solve_bodies(how, guess.recall(how.asked, std::move(l)), report);
   }
-  factor.recall(memory.made_at, memory.global.made_in_box);
+  factor.recall(memory);
   const sd_status status = solve_bodies(how, guess.recall(how.asked, std::move(l)), report);
-  factor.note(memory.made_at, memory.global.made_in_box);
+  factor.note(memory);
   return status;
 }
 
@@ -145,7 +144,7 @@ sd_status Solve::gradients(const How &how, sd_solve_report &report)
   const Guess::Start start = guess.recall(how.asked);
   A.warm = start.warm;
   for (size_t j = 0; j < bodies.flow.size() && A.warm; j++) exerted[j] = -start.l[j];
-  preconditioner.attach(A, guess.memory->made_at, guess.memory->global.made_in_box);
+  preconditioner.attach(A, *guess.memory);
   const sd_status status = sd_solve_gradients(&A, bodies.flow.data(), how.tolerance, how.max_iter,
                                               exerted.data(), make_room(), &report);
   turn_forces();

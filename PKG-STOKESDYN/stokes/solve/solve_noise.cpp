@@ -1,8 +1,4 @@
-/* Of solve: what noise adds to the solve of a step, as slip of the points and forces of films. */
-#include "solve.h"
-
-#include "keywords.h"
-#include "settings.h"
+#include "solve_noise.h"
 
 #include "domain.h"
 
@@ -12,8 +8,20 @@ using namespace LAMMPS_NS;
 
 namespace StokesDyn {
 
+SolveNoise::SolveNoise(const Voice &voice, const Scene &scene, Engine &engine, BodyScene &bodies, const Shells &shells,
+                       const StokesSettings &settings) :
+    Pointers(voice.lmp), voice(voice), scene(scene), engine(engine), bodies(bodies), shells(shells), settings(settings)
+{
+}
+
+void SolveNoise::forget()
+{
+  pushed.clear();
+  moments_left.clear();
+}
+
 /* Of each sphere, those of its points one after the other */
-std::vector<double> Solve::numbers(const sd_random_key &of_spheres) const
+std::vector<double> SolveNoise::numbers(const sd_random_key &of_spheres) const
 {
   std::vector<double> w(sd_bodies_unknowns(&bodies.bodies) + 1);
   double *next = w.data();
@@ -27,11 +35,10 @@ std::vector<double> Solve::numbers(const sd_random_key &of_spheres) const
 
 /* Where the sum is split, the near part's process and the waves at once; a near part that is not positive is
  * told of, and the whole matrix takes its place. */
-void Solve::draw_slip(const Draw &draw)
+void SolveNoise::draw_slip(const Draw &draw)
 {
   const sd_bodies &A = bodies.bodies;
   const size_t rows = sd_bodies_unknowns(&A);
-  const Voice voice(lmp, StokesSettings::COMMAND);
   const std::vector<double> w = numbers(draw.of_spheres);
   std::vector<double> waves(rows + 1);
   slip.assign(rows + 6, 0.0);
@@ -58,10 +65,9 @@ void Solve::draw_slip(const Draw &draw)
 
 /* How each body follows, and whether that leaves nothing of the drift: not where the mobility is not that of
  * an unbounded fluid of one viscosity, or a coordinate is held by something else. */
-void Solve::find_followers()
+void SolveNoise::find_followers()
 {
   const std::vector<sd_body> &all = bodies.in_open_space();
-  const Voice voice(lmp, StokesSettings::COMMAND);
   follow.assign(all.size() + 1, nullptr);
   double left = scene.settings.boundary.walled() || domain->dimension == 2 ||
       settings.ambient.visc.is_atom_style() || settings.ambient.grid_has_visc;
@@ -76,11 +82,11 @@ void Solve::find_followers()
   differs = left != 0.0;
 }
 
-void Solve::draw(const Draw &draw)
+void SolveNoise::draw(const Draw &draw)
 {
   const sd_bodies &A = bodies.bodies;
   const size_t count = sd_bodies_count(&A);
-  const Voice voice = Voice(lmp, StokesSettings::COMMAND).at_step();
+  moments_left.clear();
   shapes.begin(scene.all_epochs().run);
   kT = draw.kT;
   draw_slip(draw);
@@ -103,14 +109,21 @@ void Solve::draw(const Draw &draw)
                                bodies.velocities.empty() ? nullptr : bodies.velocities.data(), 0.1 * draw.tolerance};
   if (status == SD_OK)
     status = sd_drifter_move(&A, &d, &all, scratch.data(), of_points.data(), of_films.data());
-  if (status != SD_OK) fail_by(voice.of("half a step of noise"), status);
+  if (status != SD_OK) fail_by(voice.at_step().of("half a step of noise"), status);
   if (!differs) sd_drifter_add_own(&A, &d, kT, slip_left.data(), load_left.data());
+}
+
+double SolveNoise::memory_usage() const
+{
+  double numbers = 0.0;
+  for (const auto *array : {&slip, &pushed, &slip_left, &load_left, &of_moves}) numbers += (double) array->capacity();
+  return sizeof(double) * numbers;
 }
 
 // --- what is left of the drift, by differences ---------------------------------------------------------
 
 /* Of each body, by the lowest of its tags */
-std::vector<double> Solve::numbers_of_bodies(const sd_random_key &of_bodies) const
+std::vector<double> SolveNoise::numbers_of_bodies(const sd_random_key &of_bodies) const
 {
   const size_t count = sd_bodies_count(&bodies.bodies);
   std::vector<int64_t> tag(count, INT64_MAX);
@@ -123,7 +136,7 @@ std::vector<double> Solve::numbers_of_bodies(const sd_random_key &of_bodies) con
   return g;
 }
 
-std::vector<double> Solve::random_moves(const Draw &draw)
+std::vector<double> SolveNoise::random_moves(const Draw &draw)
 {
   const sd_bodies &A = bodies.bodies;
   const size_t count = sd_bodies_count(&A);
@@ -139,7 +152,7 @@ std::vector<double> Solve::random_moves(const Draw &draw)
 }
 
 /* A W stays as it is, the matrices are those of the place. */
-void Solve::difference(double sign)
+void SolveNoise::difference(double sign)
 {
   const sd_bodies &A = bodies.bodies;
   const size_t count = sd_bodies_count(&A), n = scene.size();
@@ -147,17 +160,17 @@ void Solve::difference(double sign)
   const sd_status status = sd_drifter_difference(&A, of_moves.data(), sign * part(), scratch.data(),
                                                  slip_left.data(), load.data());
   if (status != SD_OK)
-    fail_by(Voice(lmp, StokesSettings::COMMAND).at_step().of("the drift by differences"), status);
+    fail_by(voice.at_step().of("the drift by differences"), status);
   sd_drifter_hand_on(&A, (int) bodies.first_clump(), load.data(), load_left.data());
 }
 
-void Solve::push()
+void SolveNoise::push()
 {
   const sd_drifter_drawn all = {slip.data(), pushed.data(), slip_left.data(), load_left.data()};
   sd_drifter_add(&bodies.bodies, &all, bodies.u.data(), bodies.F.data());
 }
 
-void Solve::push_alone()
+void SolveNoise::push_alone()
 {
   if (bodies.bodies.tie) bodies.rest_films();
   std::copy_n(slip.begin(), bodies.u.size(), bodies.u.begin());
