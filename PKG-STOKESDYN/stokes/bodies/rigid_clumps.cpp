@@ -96,7 +96,8 @@ void RigidClumps::not_rigid(int64_t molecule) const
              " of its size (" +
              (must_stay_rigid() ? "fix stokes_dynamics/overdamped keeps clumps rigid, so another command "
                                   "moves their atoms or changes radii: take it away"
-                                : "rigid_clumps auto solves such clumps anew") + ")");
+                                : "does no fix rigid/small hold it together, or is the time step too long? "
+                                  "rigid_clumps auto is for clumps that bend") + ")");
 }
 
 /* LAMMPS deletes atoms that it finds outside of a box with fixed faces, and looks for lost ones only

@@ -185,6 +185,7 @@ def test_clump_that_bends_is_an_error_that_names_the_molecule(tmp_path, ranks):
                 succeed=False)
     assert "keyword rigid_clumps: the clump of molecule" in ended.text
     assert "is not rigid" in ended.text
+    assert "does no fix rigid/small hold it together, or is the time step too long?" in ended.text
 
 
 @pytest.mark.hard_case("rigid_clumps auto: clump that bends")
