@@ -64,3 +64,33 @@ def test_two_cells_of_a_lattice_are_one(simulation, tilt, model):
     for axis in range(3):
         two = fallen(2, axis)
         assert np.abs(two - np.vstack([one, one])).max() < 2e-9 * np.abs(one).max()
+
+
+@pytest.mark.parametrize("words", ["multiblob 12", "multiblob 42 half one_body no"])
+@pytest.mark.parametrize("where", ["open", "periodic"])
+def test_stress_under_loads_and_motion_in_a_strain_are_mutual(simulation, where, words):
+    """The power of loads on what a strain does to velocities is that of the strain against the stress of these loads,
+    with films, clumps and unlike radii. The sum of both stresses is linear in what causes it."""
+    F, rate = np.random.default_rng(3).normal(size=(5, 3)), 1.4
+    shear = f"fix shear all deform 1 xy erate {rate} remap none"
+
+    def answer(F, lines):
+        """Velocities less those of the fluid, and P_xy V of all spheres"""
+        box, flow = dict(BOXES[where][1]), "variable u atom 0"
+        if where == "periodic":
+            box["tilt"], fluid = (0.0, 0.0, 0.0), "box"
+        else:
+            fluid, flow = "v_u 0 0", f"variable u atom {rate if lines else 0.0}*y"
+        sim = simulation(Spheres(X, (1, 1, 1, 0.9, 0.7), molecule=MOLECULE), f"{TIGHT} {words} rigid_clumps yes "
+                         f"fluid_velocity {fluid}", fix=False, dt=1e-9, before_pair=flow, **box)
+        sim.commands(["neigh_modify exclude molecule/intra all"] + pull(F) + [MOVE] +
+                     [shear] * (where == "periodic" and lines) +
+                     ["compute S all stokes_dynamics/stress", "dump d all custom 1 /dev/null c_S[1]"]).run()
+        rows = np.array(sim.lmp.numpy.extract_compute("S", 1, 2))[:sim.n]
+        return sim.fix_rows("move")[:, :3], rows[:, 3].sum() + rows[:, 9].sum()
+
+    _, loaded = answer(F, False)
+    carried, strained = answer(0 * F, True)
+    both, sum_of_both = answer(F, True)
+    assert loaded * rate == pytest.approx((F * carried).sum(), rel=1e-7)
+    assert sum_of_both == pytest.approx(loaded + strained, rel=1e-7)

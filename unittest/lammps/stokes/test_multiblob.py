@@ -437,7 +437,7 @@ def strained(simulation, spheres, E, style):
     """Velocities less those of the flow E x, and the moments of all spheres along E, in those of a lone sphere in E"""
     formulas = [f"variable u{c} atom " + "+".join(f"({g!r})*{d}" for g, d in zip(row, "xyz"))
                 for c, row in zip("xyz", E.tolist())]
-    sim = simulation(spheres, "cut_off_distance inf visc 1 multiblob 12 fluid_velocity v_ux v_uy v_uz "
+    sim = simulation(spheres, "cut_off_distance inf visc 1 fluid_velocity v_ux v_uy v_uz "
                               f"relative_tolerance 1e-8 {style}",
                      before_pair="\n".join(formulas), fix=False, dt=1e-9)
     sim.commands([MOVE, STRESS, "dump d all custom 1 /dev/null c_S[1]"]).run()
@@ -452,7 +452,7 @@ def test_pair_in_a_strain_along_its_line_of_centres(simulation, gap, A, S):
     stresslet. Numbers: bispherical coordinates."""
     x = np.outer([-1 - gap / 2, 1 + gap / 2], np.array((2, -1, 2)) / 3)
     E = 1.7 * (np.outer(x[1], x[1]) / (x[1] @ x[1]) - np.eye(3) / 3)
-    slip, whole = strained(simulation, Spheres(x), E, "lubrication yes lubrication_gap 1e-6")
+    slip, whole = strained(simulation, Spheres(x), E, "multiblob 12 lubrication yes lubrication_gap 1e-6")
     assert abs((slip[0] - slip[1]) @ x[1] / ((x[1] - x[0]) @ E @ x[1]) - A) < 0.015 * A
     assert abs(whole / 2 - S) < 0.015 * S
 
@@ -464,7 +464,7 @@ def test_intrinsic_viscosity_of_a_rigid_row(simulation, n, exact):
     spheres = Spheres(np.outer(2 * np.arange(n) - n + 1.0, d), molecule=1)
     basis = [np.diag((1.0, -1.0, 0.0)), np.diag((1.0, 1.0, -2.0))]
     basis += [np.outer(a, b) + np.outer(b, a) for a, b in zip(np.eye(3), np.roll(np.eye(3), 1, axis=0))]
-    found = 2.5 / n * np.mean([strained(simulation, spheres, E, "rigid_clumps yes")[1] for E in basis])
+    found = 2.5 / n * np.mean([strained(simulation, spheres, E, "multiblob 12 rigid_clumps yes")[1] for E in basis])
     assert abs(found / exact - 1) < (1e-6 if n == 1 else 6e-3)
 
 
