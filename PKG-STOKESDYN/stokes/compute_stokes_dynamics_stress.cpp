@@ -92,6 +92,14 @@ void ComputeStokesDynamicsStress::take_off_noise()
   }
 }
 
+/* Half of torques T, or minus that, on the virial's xy, xz, yz */
+static void add_half(const double *T, double half, double *virial)
+{
+  virial[3] += half * T[2];
+  virial[4] -= half * T[1];
+  virial[5] += half * T[0];
+}
+
 /* LAMMPS's rigid bodies sum the virial x F_y, not (x F_y + y F_x)/2, of the forces that hold their
  * atoms. The moment of these forces, the sum of x F_y - y F_x, is the torque T_z on the atoms, but for
  * the inertia of their spins: half of it is what the sum has too much. */
@@ -102,11 +110,19 @@ static void symmetrise(const Atom *atom, Fix *rigid, double *virial)
   if (!body || dim != 1 || !atom->torque_flag) return;
   for (int i = 0; i < atom->nlocal; i++) {
     if (body[i] < 0) continue;
-    const double *T = atom->torque[i];
-    virial[3] -= 0.5 * T[2];
-    virial[4] += 0.5 * T[1];
-    virial[5] -= 0.5 * T[0];
+    add_half(atom->torque[i], -0.5, virial);
   }
+}
+
+/* Pair styles sum x F_y as well. Two spheres are torque-free together: the moment of their forces, the sum
+ * of x F_y - y F_x, is minus the torques T_z that friction, dipoles and bonds put on them. Those of the
+ * fluid, where the pair style adds them, have no virial. */
+void ComputeStokesDynamicsStress::symmetrise_pairs(double *virial) const
+{
+  const Hydrodynamics &hydro = hydrodynamics();
+  add_half(hydro.memory->torque_of_pairs(), 0.5, virial);
+  for (int i : hydro.ambient.who())
+    if (hydro.settings.add_force) add_half(hydro.torque(i), -0.5, virial);
 }
 
 /* Virials of all other forces, as compute pressure sums them: of this rank, but for that of kspace,
@@ -117,6 +133,7 @@ void ComputeStokesDynamicsStress::add_others(double *virial) const
     for (int k = 0; k < 6; k++) virial[k] += of[k];
   };
   if (force->pair) add(force->pair->virial);
+  symmetrise_pairs(virial);
   if (force->bond) add(force->bond->virial);
   if (force->angle) add(force->angle->virial);
   if (force->dihedral) add(force->dihedral->virial);

@@ -53,6 +53,7 @@ class ComputeStokesDynamicsStress : public LAMMPS_NS::Compute {
   Hydrodynamics &hydrodynamics() const;
   void find_moments();
   void take_off_noise();
+  void symmetrise_pairs(double *virial) const;
   void add_others(double *virial) const;
 };
 

@@ -10,8 +10,10 @@
 
 #include "atom.h"
 #include "domain.h"
+#include "force.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <map>
@@ -91,6 +93,21 @@ bool FixStokesDynamicsState::moved_since_made(const std::vector<int> &who, doubl
   MPI_Allreduce(MPI_IN_PLACE, all, SD_MOVED + 1, MPI_DOUBLE, MPI_SUM, world);
   copy<SD_MOVED>(all, sums);
   return all[SD_MOVED] == 0.0;
+}
+
+int FixStokesDynamicsState::setmask()
+{
+  return FixConst::PRE_REVERSE;
+}
+
+/* The forces of the step stand in the atoms, but for those of fixes. */
+void FixStokesDynamicsState::pre_reverse(int, int vflag)
+{
+  if (!vflag || !atom->torque_flag) return;
+  std::fill_n(of_pairs, 3, 0.0);
+  const int n = atom->nlocal + (force->newton ? atom->nghost : 0);
+  for (int i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++) of_pairs[d] += atom->torque[i][d];
 }
 
 void FixStokesDynamicsState::erase(int i)

@@ -36,7 +36,9 @@ class FixStokesDynamicsState : public RowsFix {
   static void take_away(LAMMPS_NS::LAMMPS *lmp);
 
   FixStokesDynamicsState(LAMMPS_NS::LAMMPS *, int, char **);
-  int setmask() override { return 0; }
+  int setmask() override;
+  void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
+  void pre_reverse(int, int vflag) override;
   void post_run() override;
 
   /* Columns of a row. Behind them v' (and w') of the solve before the last one, where history is kept, and
@@ -117,6 +119,10 @@ class FixStokesDynamicsState : public RowsFix {
     std::vector<double> members;
   } global;
 
+  /* In steps with a virial: the sum of the torques of pair styles, bonds and kspace, this one's too, on the
+   * atoms of this rank and on the copies that it has of others' */
+  const double *torque_of_pairs() const { return of_pairs; }
+
   /* Of this step, since the first run: it goes on after a restart. */
   double time() const;
   /* If they are new: nothing of the past stands. */
@@ -127,6 +133,7 @@ class FixStokesDynamicsState : public RowsFix {
 
  private:
   AtomRows larger[3];
+  double of_pairs[3] = {0.0};
   Resume resume;
   AtomRows left;
 

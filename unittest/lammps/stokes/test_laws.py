@@ -94,3 +94,22 @@ def test_stress_under_loads_and_motion_in_a_strain_are_mutual(simulation, where,
     both, sum_of_both = answer(F, True)
     assert loaded * rate == pytest.approx((F * carried).sum(), rel=1e-7)
     assert sum_of_both == pytest.approx(loaded + strained, rel=1e-7)
+
+
+@pytest.mark.parametrize("words, lines", [("", [f"{MOVE} torque all 0.3 0 2.0"]),
+                                          ("add_force yes", ["fix move all nve/sphere", "set group all omega 0.3 0 0.4",
+                                                             "set atom 1 omega 0.1 0.2 0.7"])])
+def test_stress_of_friction_is_symmetric(simulation, words, lines):
+    """Two spheres in touch along x: the virial of LAMMPS is x F_y where the stress has half of it; torques of the fluid
+    and of the keyword are no part of this."""
+    pair = f"stokes_dynamics cut_off_distance inf visc 1.3 multiblob 12 relative_tolerance 1e-6 {words}"
+    sim = simulation(Spheres([(3, 4, 4), (4.999, 4, 4)]),
+                     [f"pair_style hybrid/overlay gran/hooke/history 1e4 NULL 0 NULL 0.5 0 {pair}",
+                      "pair_coeff * * gran/hooke/history", "pair_coeff * * stokes_dynamics"], boundary="p p p",
+                     box=[(0.0, 8.0)] * 3, fix=False, dt=1e-5, comm="comm_modify vel yes")
+    sim.commands(lines + ["compute S all stokes_dynamics/stress", "compute P all pressure NULL pair",
+                          "thermo_style custom step c_S[16] c_P[4]", "thermo 20"]).run(20)
+    S, P = sim.compute_vector("S", 18)[12:], sim.compute_vector("P", 6)
+    assert abs(P[3]) > 1e-6
+    assert S[3:5] == pytest.approx(P[3:5] / 2, abs=2e-3 * np.abs(P[3:]).max())
+    assert np.abs(S[:3] - P[:3]).max() < 1e-12 * np.abs(P).max()
