@@ -82,7 +82,7 @@ double FixSphEnergy::surface(const sd_sph_members &g) const
 {
   double sum = 0.0;
   for (const auto *fix : tensions)
-    if (fix->has_rows(g.n)) sum += fix->tension() * sd_sph_sum(&g, fix->areas());
+    if (fix->surface().has_rows(g.n)) sum += fix->tension() * sd_sph_sum(&g, fix->surface().areas().data());
   return sum;
 }
 
@@ -102,7 +102,7 @@ void FixSphEnergy::measure(double *out)
   out[RUBS] = sd_sph_power(&members, 4, pair->own_friction(), &others);
   out[RUBS] += others;
   out[PULLED] = 0.0;
-  for (const auto *fix : tensions) out[PULLED] += sd_sph_power(&members, 3, fix->forces(), &others);
+  for (const auto *fix : tensions) out[PULLED] += sd_sph_power(&members, 3, fix->surface().forces(), &others);
   out[SHIFTED] = pair->shift() ? along_gravity(members, pair->shift()) : 0.0;
 }
 

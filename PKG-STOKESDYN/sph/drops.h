@@ -3,41 +3,42 @@
 #ifndef SD_DROPS_H
 #define SD_DROPS_H
 
+#include "ghost_rows.h"
 #include "sd_sph_drops.h"
 
 #include "pointers.h"
 
-#include <functional>
 #include <vector>
 
 namespace StokesDyn {
 
 class Drops : protected LAMMPS_NS::Pointers {
  public:
-  explicit Drops(LAMMPS_NS::LAMMPS *lmp) : Pointers(lmp) {}
+  Drops(LAMMPS_NS::LAMMPS *lmp, GhostExchange &ghosts) : Pointers(lmp), ghosts(ghosts) {}
   ~Drops();
   Drops(const Drops &) = delete;
   Drops &operator=(const Drops &) = delete;
 
-  /* Sends a number of each particle of this rank to its ghosts */
-  using ToGhosts = std::function<void(double *)>;
   /* Takes from the forces F [3 n] on particles of this rank what each drop has too much that holds no held
-   * particle; mass, held [n] 0 or 1 */
-  void keep_momentum(const sd_sph_film &film, const double *mass, const double *held,
-                     const ToGhosts &to_ghosts, double *F);
+   * particle; held [n], nullptr: none is */
+  void keep_momentum(const sd_sph_film &film, const char *held, double *F);
   /* Of the latest step: how many there are, and the force on those that are held, x y z */
   int number() const { return count; }
   double force_on_held(int d) const { return sum[d]; }
 
  private:
+  GhostExchange &ghosts;
   sd_cells cells = {};
   size_t room = 0;
-  std::vector<int> parent, place;
+  // of the list of neighbours of this step: until the next one drops stay as they are
+  bool stay = false;
+  std::vector<int> parent, of;
   std::vector<double> name;
-  std::vector<sd_sph_drop> drops;
-  int count = 0;
+  std::vector<sd_sph_drop> mine;
+  int here = 0, count = 0;
   double sum[3] = {0.0, 0.0, 0.0};
-  void find(const sd_sph_film &film, const ToGhosts &to_ghosts);
+  void find(const sd_sph_film &film);
+  void make_names(const sd_sph_film &film);
 };
 
 }    // namespace StokesDyn

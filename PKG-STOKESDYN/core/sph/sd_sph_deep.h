@@ -4,16 +4,18 @@
 #define SD_SPH_DEEP_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "sd_extern_c.h"
 
 SD_BEGIN_C
 
-/* near [n]: those of the first n that have a marked particle of x4 [4 all], marked [all], within reach > 0,
- * in their order, and some that are further; the others are deep. Returns how many.
- * grid [SD_SPH_DEEP_CELLS(all)]: the caller's scratch. */
-#define SD_SPH_DEEP_CELLS(all) ((size_t) (all) + 128)
-int sd_sph_find_near(int all, int n, const double *x4, const char *marked, double reach, char *grid,
+/* near [n]: those of the first n that have a marked particle of x4 [4 all], one whose last number is
+ * above 0, within reach > 0, in their order, and some that are further, nearly all within 1.3 reach; the
+ * others are deep. Returns how many. dimension 2: cells have no z. scratch [SD_SPH_DEEP_SCRATCH(all)]: of
+ * the caller. */
+#define SD_SPH_DEEP_SCRATCH(all) (2 * ((size_t) (all) + 128))
+int sd_sph_find_near(int dimension, int all, int n, const double *x4, double reach, uint64_t *scratch,
                      int *near);
 
 SD_END_C

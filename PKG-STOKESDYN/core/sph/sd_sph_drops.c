@@ -1,5 +1,7 @@
 #include "sd_sph_drops.h"
 
+#include "sd_sph_tension_internal.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +9,7 @@
 /* Particles of other pair styles, which have no volume here, are in no drop. */
 static int is_fluid(const sd_sph_film *f, int i)
 {
-  return !(f->wall && f->wall[i]) && f->x4[4 * (size_t) i + 3] > 0.0;
+  return !(f->wall && f->wall[i]) && f->x4[4 * (size_t) i + 3] != 0.0;
 }
 
 /* The root of the tree of i; the way there is halved for the next who asks. */
@@ -19,9 +21,8 @@ static int drops_root_of(int *parent, int i)
 
 /* Makes one tree of the points of two cells, which each are one, if any two of them are in reach: 1 if they have been
  * two. */
-static int drops_join(const sd_sph_film *f, const sd_cells *c, int first, int other, int *parent)
+static int drops_join(const sd_sph_film *f, double reach, const sd_cells *c, int first, int other, int *parent)
 {
-  const double reach = 2.0 * f->surface->h;
   const int one = drops_root_of(parent, first), two = drops_root_of(parent, other);
   if (one == two) return 0;
   for (int i = first; i >= 0; i = c->next[i])
@@ -37,7 +38,7 @@ static int drops_join(const sd_sph_film *f, const sd_cells *c, int first, int ot
 
 /* Joins cells that are `ring` apart along one direction and not more along others, each pair once; returns how many
  * trees that has taken away. */
-static int drops_join_ring(const sd_sph_film *f, const sd_cells *c, int ring, int *parent)
+static int drops_join_ring(const sd_sph_film *f, double reach, const sd_cells *c, int ring, int *parent)
 {
   const int up = f->surface->dimension == 3 ? ring : 0;
   uint64_t number;
@@ -52,7 +53,7 @@ static int drops_join_ring(const sd_sph_film *f, const sd_cells *c, int ring, in
         for (int x = z > 0 || y > 0 ? -ring : 1; x <= ring; x++) {
           if (abs(x) < ring && abs(y) < ring && z < ring) continue;
           const int other = sd_cells_slot(c, at[0] + x, at[1] + y, at[2] + z, &number)->first;
-          if (other >= 0) joined += drops_join(f, c, first, other, parent);
+          if (other >= 0) joined += drops_join(f, reach, c, first, other, parent);
         }
   }
   return joined;
@@ -61,9 +62,9 @@ static int drops_join_ring(const sd_sph_film *f, const sd_cells *c, int ring, in
 /* All points of a cell are in reach of each other, and no point is of one that is more than two cells away. After
  * the next cells nearly all of a drop is one tree, so that few pairs are asked for their distance; a scene that is one
  * drop is known then. */
-void sd_sph_find_drops(const sd_sph_film *f, sd_cells *cells, int *parent)
+int sd_sph_find_drops(const sd_sph_film *f, double reach, sd_cells *cells, int *parent)
 {
-  const double lo[3] = {0.0, 0.0, 0.0}, side = 2.0 * f->surface->h / sqrt(f->surface->dimension) * (1.0 - 1e-9);
+  const double lo[3] = {0.0, 0.0, 0.0}, side = reach / sqrt(f->surface->dimension) * (1.0 - 1e-9);
   int trees = 0;
   sd_cells_clear(cells, lo, side);
   for (int i = 0; i < f->all; i++) {
@@ -75,7 +76,8 @@ void sd_sph_find_drops(const sd_sph_film *f, sd_cells *cells, int *parent)
     else
       trees++;
   }
-  for (int ring = 1; ring <= 2 && trees > 1; ring++) trees -= drops_join_ring(f, cells, ring, parent);
+  for (int ring = 1; ring <= 2 && trees > 1; ring++) trees -= drops_join_ring(f, reach, cells, ring, parent);
+  return trees;
 }
 
 int sd_sph_name_drops(int all, int *parent, double *name)
@@ -93,24 +95,31 @@ int sd_sph_name_drops(int all, int *parent, double *name)
   return changed;
 }
 
-int sd_sph_sum_drops(const sd_sph_film *f, int *parent, const sd_sph_in_drops *of, sd_sph_drop *out,
-                     int *place)
+int sd_sph_list_drops(const sd_sph_film *f, int *parent, const double *name, int *of, sd_sph_drop *out)
 {
   int count = 0;
-  for (int i = 0; i < f->all; i++) place[i] = -1;
+  for (int i = 0; i < f->all; i++) of[i] = -1;
   for (int i = 0; i < f->list->n; i++) {
     if (!is_fluid(f, i)) continue;
-    int *at = &place[drops_root_of(parent, i)];
+    int *at = &of[drops_root_of(parent, i)];
     if (*at < 0) {
       *at = count++;
-      out[*at] = (sd_sph_drop){.name = of->name[i]};
+      out[*at] = (sd_sph_drop){.name = name[i]};
     }
-    sd_sph_drop *drop = &out[*at];
-    for (int d = 0; d < 3; d++) drop->F[d] += of->F[3 * (size_t) i + d];
-    drop->mass += of->mass[i];
-    if (of->held[i] > drop->held) drop->held = of->held[i];
+    of[i] = *at;
+    out[*at].V += fabs(f->x4[4 * (size_t) i + 3]);
   }
   return count;
+}
+
+void sd_sph_sum_drops(const sd_sph_film *f, const int *of, const char *held, const double *F, int count,
+                      sd_sph_drop *drops)
+{
+  for (int k = 0; k < count; k++) drops[k] = (sd_sph_drop){.name = drops[k].name, .V = drops[k].V};
+  for EACH_NEAR(f, row, i)
+    for (int d = 0; d < 3 && of[i] >= 0; d++) drops[of[i]].F[d] += F[3 * (size_t) i + d];
+  for (int i = 0; i < f->list->n && held; i++)
+    if (held[i] && of[i] >= 0) drops[of[i]].held = 1.0;
 }
 
 static int by_name(const void *a, const void *b)
@@ -129,7 +138,7 @@ static int drops_add_up(int count, sd_sph_drop *drops)
       continue;
     }
     for (int d = 0; d < 3; d++) drops[last].F[d] += drops[k].F[d];
-    drops[last].mass += drops[k].mass;
+    drops[last].V += drops[k].V;
     if (drops[k].held > drops[last].held) drops[last].held = drops[k].held;
   }
   return last + 1;
@@ -149,16 +158,13 @@ void sd_sph_find_excess(int count, const sd_sph_drop *drops, int here, sd_sph_dr
 {
   for (int k = 0; k < here; k++) {
     const sd_sph_drop *whole = bsearch(&mine[k], drops, (size_t) count, sizeof(sd_sph_drop), by_name);
-    for (int d = 0; d < 3; d++) mine[k].F[d] = whole->held > 0.0 ? 0.0 : whole->F[d] / whole->mass;
+    for (int d = 0; d < 3; d++) mine[k].F[d] = whole->held > 0.0 ? 0.0 : whole->F[d] / whole->V;
   }
 }
 
-void sd_sph_keep_momentum(const sd_sph_film *f, int *parent, const int *place, const double *mass,
-                          const sd_sph_drop *excess, double *F)
+void sd_sph_keep_momentum(const sd_sph_film *f, const int *of, const sd_sph_drop *excess, double *F)
 {
-  for (int i = 0; i < f->list->n; i++) {
-    if (!is_fluid(f, i)) continue;
-    const sd_sph_drop *drop = &excess[place[drops_root_of(parent, i)]];
-    for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] -= mass[i] * drop->F[d];
-  }
+  for (int i = 0; i < f->list->n; i++)
+    for (int d = 0; d < 3 && of[i] >= 0; d++)
+      F[3 * (size_t) i + d] -= fabs(f->x4[4 * (size_t) i + 3]) * excess[of[i]].F[d];
 }

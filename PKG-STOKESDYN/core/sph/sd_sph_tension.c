@@ -40,6 +40,7 @@ void sd_sph_surface_make(sd_sph_kernel kernel, int dimension, double h, sd_sph_s
   s->kernel = kernel;
   s->dimension = dimension;
   s->h = h;
+  s->W0 = sd_sph_W(kernel, dimension, 0.0, h);
   s->S0[0] = 0.5;
   for (int k = 1; k < SD_SPH_DEPTHS; k++) {
     const double middle = of_plane(kernel, dimension, step * (k - 0.5), &unused),
@@ -47,26 +48,19 @@ void sd_sph_surface_make(sd_sph_kernel kernel, int dimension, double h, sd_sph_s
     s->S0[k] = s->S0[k - 1] + step / 6.0 * (before + 4.0 * middle + here);
     before = here;
   }
-}
-
-/* near: an interval to begin with, and the one that is found */
-static double depth_near(const sd_sph_surface *s, double S, int *near)
-{
-  enum { INTERVALS = SD_SPH_DEPTHS - 1 };
-  if (!(S > s->S0[0])) return 0.0;
-  if (S >= s->S0[INTERVALS]) return 2.0 * s->h;
-  int k = *near;
-  while (S < s->S0[k]) k--;
-  while (S >= s->S0[k + 1]) k++;
-  *near = k;
-  const double part = (S - s->S0[k]) / (s->S0[k + 1] - s->S0[k]);
-  return (k + part) * 2.0 * s->h / INTERVALS;
+  for (int m = 0; m <= SD_SPH_STARTS; m++)
+    s->start[m] = (unsigned char) sd_interval(s->S0, SD_SPH_DEPTHS - 1, 0.5 + 0.5 * m / SD_SPH_STARTS);
 }
 
 double sd_sph_depth(const sd_sph_surface *s, double S)
 {
-  int near = sd_interval(s->S0, SD_SPH_DEPTHS - 1, S);
-  return depth_near(s, S, &near);
+  enum { INTERVALS = SD_SPH_DEPTHS - 1 };
+  if (!(S > s->S0[0])) return 0.0;
+  if (S >= s->S0[INTERVALS]) return 2.0 * s->h;
+  int k = s->start[(int) (fmin(2.0 * S - 1.0, 1.0) * SD_SPH_STARTS)];
+  while (S >= s->S0[k + 1]) k++;
+  const double part = (S - s->S0[k]) / (s->S0[k + 1] - s->S0[k]);
+  return (k + part) * 2.0 * s->h / INTERVALS;
 }
 
 static double beta_at(const sd_sph_surface *s, double z)
@@ -77,23 +71,32 @@ static double beta_at(const sd_sph_surface *s, double z)
 }
 
 /* Near the centre of a curvature 1 + k z vanishes: not below this. */
-static const double LEAST_PART = 0.3;
+#define LEAST_PART 0.3
 
-/* sum of k/(1 + k z) over the eigenvalues of E: tr(E (I + z E)^-1), and one by one only where the bound counts. */
-static double at_surface(const sd_sph_symmetric *E, double z)
+/* Sums of products of one, two and three eigenvalues k */
+typedef struct {
+  double k, kk, kkk;
+} invariants;
+
+static invariants invariants_of(const sd_sph_symmetric *E)
 {
-  sd_sph_symmetric whole;
-  for (int c = 0; c < 6; c++) whole.a[c] = z * E->a[c] + (c < 3 ? 1.0 : 0.0);
-  if (sd_sph_above(&whole, LEAST_PART)) {
-    const sd_sph_symmetric C = sd_sph_cofactors(&whole);
-    const double *e = E->a, *c = C.a;
-    return (e[0] * c[0] + e[1] * c[1] + e[2] * c[2] + 2.0 * (e[3] * c[3] + e[4] * c[4] + e[5] * c[5])) /
-        sd_sph_determinant(&whole, &C);
-  }
+  const sd_sph_symmetric C = sd_sph_cofactors(E);
+  return (invariants){E->a[0] + E->a[1] + E->a[2], C.a[0] + C.a[1] + C.a[2], sd_sph_determinant(E, &C)};
+}
+
+/* sum of k/(1 + k z) over the eigenvalues of E: the derivative of the product of all 1 + k z, over it; and one by one
+ * only where the bound counts. All 1 + k z are above it where the sums of products of what they have more are
+ * positive. */
+static double at_surface(const sd_sph_symmetric *E, const invariants *of, double z)
+{
+  static const double MORE = 1.0 - LEAST_PART;
+  const double k = z * of->k, kk = z * z * of->kk, kkk = z * z * z * of->kkk;
+  if (3.0 * MORE + k > 0.0 && MORE * (3.0 * MORE + 2.0 * k) + kk > 0.0 && MORE * (MORE * (MORE + k) + kk) + kkk > 0.0)
+    return (of->k + z * (2.0 * of->kk + 3.0 * z * of->kkk)) / (1.0 + k + kk + kkk);
   const double *e = E->a, full[9] = {e[0], e[3], e[4], e[3], e[1], e[5], e[4], e[5], e[2]};
-  double k[3], unused[9], kappa = 0.0;
-  sd_eigen(3, full, k, unused);
-  for (int i = 0; i < 3; i++) kappa += k[i] / fmax(1.0 + k[i] * z, LEAST_PART);
+  double each[3], unused[9], kappa = 0.0;
+  sd_eigen(3, full, each, unused);
+  for (int i = 0; i < 3; i++) kappa += each[i] / fmax(1.0 + each[i] * z, LEAST_PART);
   return kappa;
 }
 
@@ -102,11 +105,11 @@ double sd_sph_surface_curvature(const sd_sph_surface *s, const double *A, double
   const sd_sph_symmetric E = s->dimension == 3
       ? (sd_sph_symmetric){{A[0], A[4], A[8], 0.5 * (A[1] + A[3]), 0.5 * (A[2] + A[6]), 0.5 * (A[5] + A[7])}}
       : (sd_sph_symmetric){{A[0] + A[4]}};
-  int near = sd_interval(s->S0, SD_SPH_DEPTHS - 1, S);
-  double z = depth_near(s, S, &near), kappa = at_surface(&E, z);
+  const invariants of = invariants_of(&E);
+  double z = sd_sph_depth(s, S), kappa = at_surface(&E, &of, z);
   for (int round = 0; curved && round < 2; round++) {
-    z = depth_near(s, S + kappa * s->h * beta_at(s, z), &near);
-    kappa = at_surface(&E, z);
+    z = sd_sph_depth(s, S + kappa * s->h * beta_at(s, z));
+    kappa = at_surface(&E, &of, z);
   }
   const double most = 2.0 * (s->dimension - 1) / s->h;
   return fmax(-most, fmin(most, kappa));
@@ -119,24 +122,29 @@ static int film_is_wall(const sd_sph_film *f, int i)
   return f->wall && f->wall[i];
 }
 
-/* V W of a particle at its own place */
-static double own_share(const sd_sph_film *f, int i)
+static double volume_of(const sd_sph_film *f, int i)
 {
-  const sd_sph_surface *s = f->surface;
-  return f->x4[4 * (size_t) i + 3] * sd_sph_W(s->kernel, s->dimension, 0.0, s->h);
+  return fabs(f->x4[4 * (size_t) i + 3]);
 }
 
-void sd_sph_film_sums(const sd_sph_film *f, const sd_sph_film_rows *rows)
+size_t sd_sph_skin_size(const sd_sph_film *f)
 {
-  loops_of_films()->sums(f, rows->sums);
-  const double W0 = sd_sph_W(f->surface->kernel, f->surface->dimension, 0.0, f->surface->h);
+  size_t size = SD_SPH_LANES;
   for EACH_NEAR(f, row, i)
-    rows->sums[8 * (size_t) i + (film_is_wall(f, i) ? 4 : 0)] += W0 * f->x4[4 * (size_t) i + 3];
+    if (!f->wall && !sd_sph_sums_wait(f, i)) size += (size_t) f->list->count[i];
+  return size;
+}
+
+void sd_sph_film_sums(const sd_sph_film *f, const sd_sph_film_rows *rows, sd_sph_skin *skin)
+{
+  loops_of_films()->sums(f, rows->sums, skin);
+  for EACH_NEAR(f, row, i)
+    if (!sd_sph_sums_wait(f, i))
+      rows->sums[8 * (size_t) i + (film_is_wall(f, i) ? 4 : 0)] += f->surface->W0 * volume_of(f, i);
 }
 
 void sd_sph_film_wetness(const sd_sph_film *f, const sd_sph_film_rows *rows, double *wet)
 {
-  memset(wet, 0, sizeof(double) * (size_t) f->list->n);
   for EACH_NEAR(f, row, i) {
     const double S = rows->sums[8 * (size_t) i], Sw = rows->sums[8 * (size_t) i + 4];
     wet[i] = film_is_wall(f, i) && Sw <= 0.98 ? fmin(1.0, S / fmax(1.0 - Sw, 0.02)) : 0.0;
@@ -189,6 +197,7 @@ void sd_sph_film_normals(const sd_sph_film *f, const sd_sph_film_rows *rows)
   static const double FROM = 0.1, TO = 0.3;    // of h |G|
   const double h = f->surface->h;
   for EACH_NEAR(f, row, i) {
+    if (sd_sph_sums_wait(f, i)) continue;
     const double *of = rows->sums + 8 * (size_t) i, *beside = rows->beside ? rows->beside + 8 * (size_t) i : NULL;
     double *S_G = rows->whole + 4 * (size_t) i, *n = rows->surface + 4 * (size_t) i;
     double *contact = rows->at_wall ? rows->at_wall + 8 * (size_t) i : NULL;
@@ -201,7 +210,7 @@ void sd_sph_film_normals(const sd_sph_film *f, const sd_sph_film_rows *rows)
     }
     for (int c = 0; c < 4 && beside; c++) S_G[c] += beside[c];
     const double size = length3(S_G + 1);
-    if (!(size * h > FROM) || (f->inside && f->inside[i] && !(of[4] > 0.0))) continue;
+    if (!(size * h > FROM) || (f->x4[4 * (size_t) i + 3] < 0.0 && !(of[4] > 0.0))) continue;
     n[3] = fmin(1.0, (size * h - FROM) / (TO - FROM));
     for (int d = 0; d < 3; d++) n[d] = -S_G[1 + d] / size;
     if (!beside) continue;
@@ -221,7 +230,7 @@ static sd_sph_symmetric bounded_inverse(const sd_sph_symmetric *M)
   sd_sph_symmetric B = sd_sph_cofactors(M);
   const double det = sd_sph_determinant(M, &B), *m = M->a;
   if (sd_sph_above(M, LEAST)) {
-    for (int c = 0; c < 6; c++) B.a[c] /= det;
+    for (int c = 0; c < 6; c++) B.a[c] *= 1.0 / det;
     return B;
   }
   const double full[9] = {m[0], m[3], m[4], m[3], m[1], m[5], m[4], m[5], m[2]};
@@ -265,80 +274,77 @@ static void along_surface(const double *n, double A[9])
     }
 }
 
-size_t sd_sph_skin_size(const sd_sph_film *f, const sd_sph_film_rows *rows)
+size_t sd_sph_skin_weights(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin)
 {
-  size_t size = SD_SPH_LANES;
+  size_t size = 0;
   for EACH_NEAR(f, row, i)
-    if (rows->surface[4 * (size_t) i + 3] > 0.0) size += (size_t) f->list->count[i];
+    if (rows->surface[4 * (size_t) i + 3] > 0.0) size += (size_t) skin->count[row];
   return size;
 }
 
-void sd_sph_film_curvatures(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *v4,
-                            const sd_sph_skin *skin, double *kappa)
+void sd_sph_film_curvatures(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *v4, sd_sph_skin *skin,
+                            double *kappa)
 {
-  const double *surface = rows->surface, *at_wall = rows->at_wall;
   double gradient[9];
-  memset(kappa, 0, sizeof(double) * (size_t) f->list->n);
-  for (int i = 0; i <= f->all; i++) skin->shows[i] = surface[4 * (size_t) i + 3] != 0.0;
   loops_of_films()->turns(f, rows, v4, skin);
-  for EACH_NEAR(f, row, i) {
-    if (!(surface[4 * (size_t) i + 3] > 0.0)) continue;
-    corrected_gradient(f->surface->dimension, rows->turns + SD_SPH_SKIN_SUMS * (size_t) i, gradient);
-    along_surface(surface + 4 * (size_t) i, gradient);
-    const int curved = !at_wall || !(at_wall[8 * (size_t) i + 3] > 0.0);
+  for (int row = 0; row < skin->size; row++) {
+    const int i = skin->who[row], curved = !rows->at_wall || !(rows->at_wall[8 * (size_t) i + 3] > 0.0);
+    corrected_gradient(f->surface->dimension, skin->turns + SD_SPH_SKIN_SUMS * (size_t) row, gradient);
+    along_surface(rows->surface + 4 * (size_t) i, gradient);
     kappa[i] = sd_sph_surface_curvature(f->surface, gradient, rows->whole[4 * (size_t) i], curved);
   }
 }
 
-void sd_sph_film_means(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin,
-                       const double *k, double *mean)
+void sd_sph_film_means(const sd_sph_skin *skin, const double *k, double *mean)
 {
-  memset(mean, 0, sizeof(double) * (size_t) f->list->n);
-  loops_of_films()->means(f, skin, k, mean);
-  for EACH_NEAR(f, row, i) {
-    const double w = rows->surface[4 * (size_t) i + 3], own = w > 0.0 ? own_share(f, i) * w : 0.0;
-    mean[i] = w > 0.0 ? (mean[i] + own * k[i]) / (rows->turns[SD_SPH_SKIN_SUMS * (size_t) i + 15] + own) : 0.0;
-  }
+  loops_of_films()->means(skin, k, mean);
 }
 
-void sd_sph_film_sharpen(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *kappa, const double *once,
-                         const double *twice, double *ks)
+void sd_sph_film_sharpen(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin,
+                         const double *kappa, double *once, const double *twice)
 {
   static const double SHARPER = 2.8, DEEPER = 0.16;
-  for EACH_NEAR(f, row, i) {
+  const double deeper = DEEPER / (f->surface->dimension - 1) * f->surface->h;
+  for (int row = 0; row < skin->size; row++) {
+    const int i = skin->who[row];
     const double nw = rows->at_wall ? rows->at_wall[8 * (size_t) i + 3] : 0.0;
     const double k = (1.0 - nw) * (once[i] + SHARPER * (once[i] - twice[i])) + nw * kappa[i];
-    ks[i] = k * (1.0 + DEEPER / (f->surface->dimension - 1) * f->surface->h * k);
+    once[i] = k * (1.0 + deeper * k);
   }
 }
 
 void sd_sph_film_inwards(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin, const double *ks,
                          double *k)
 {
-  sd_sph_film_means(f, rows, skin, ks, k);
-  loops_of_films()->inwards(f, rows, ks, k);
-  for EACH_NEAR(f, row, i) {
+  loops_of_films()->means(skin, ks, k);
+  for (int row = 0; row < skin->size; row++) {
+    const int i = skin->who[row];
     const double w = rows->surface[4 * (size_t) i + 3];
-    if (w > 0.0) k[i] = w * ks[i] + (1.0 - w) * k[i];
+    k[i] = w * ks[i] + (1.0 - w) * k[i];
+    rows->surface[4 * (size_t) i] = ks[i];
   }
+  for (int j = f->list->n; j < f->all; j++)
+    if (rows->surface[4 * (size_t) j + 3] > 0.0) rows->surface[4 * (size_t) j] = ks[j];
+  loops_of_films()->inwards(f, rows, k);
 }
 
 // --- force -----------------------------------------------------------------------------------------
 
-void sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const sd_sph_film_rows *rows, const double *k,
-                           double *F, double *area)
+void sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const sd_sph_film_rows *rows,
+                           const sd_sph_skin *skin, const double *k, double *F, double *area)
 {
   const double factor = 2.0 * (f->surface->dimension + 2) * t->friction;
-  memset(F, 0, sizeof(double) * 3 * (size_t) f->list->n);
-  memset(area, 0, sizeof(double) * (size_t) f->list->n);
   for EACH_NEAR(f, row, i) {
-    const double V = film_is_wall(f, i) ? 0.0 : f->x4[4 * (size_t) i + 3], *G = rows->whole + 4 * (size_t) i + 1,
-                 w = rows->surface[4 * (size_t) i + 3], *rubs = rows->turns + SD_SPH_SKIN_SUMS * (size_t) i + 16;
-    for (int d = 0; d < 3; d++) {
-      F[3 * (size_t) i + d] = 2.0 * t->sigma * V * k[i] * G[d];
-      if (w > 0.0) F[3 * (size_t) i + d] += factor * w * V * rubs[d];
-    }
-    area[i] = w > 0.0 || (w == 0.0 && rubs[-1] > 0.0) ? 2.0 * V * length3(G) : 0.0;
+    const double *S_G = rows->whole + 4 * (size_t) i, w = rows->surface[4 * (size_t) i + 3], V = volume_of(f, i);
+    if (w < 0.0) continue;
+    for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] = 2.0 * t->sigma * V * k[i] * S_G[1 + d];
+    if (w > 0.0 || S_G[0] > 0.0) area[i] = 2.0 * V * length3(S_G + 1);
+  }
+  for (int row = 0; row < skin->size; row++) {
+    const int i = skin->who[row];
+    const double rub = factor * rows->surface[4 * (size_t) i + 3] * volume_of(f, i),
+                 *rubs = skin->turns + SD_SPH_SKIN_SUMS * (size_t) row + 16;
+    for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] += rub * rubs[d];
   }
 }
 
@@ -348,7 +354,7 @@ void sd_sph_dry_walls(const sd_sph_film *f, double sigma, const sd_sph_film_rows
   for EACH_NEAR(f, row, i) {
     const double *of = rows->sums + 8 * (size_t) i, *G = rows->whole + 4 * (size_t) i + 1;
     if (film_is_wall(f, i) || !(of[4] > 0.0)) continue;
-    const double push = 2.0 * f->x4[4 * (size_t) i + 3] * fmax(0.0, fmin(P[i], sigma * k[i]));
+    const double push = 2.0 * volume_of(f, i) * fmax(0.0, fmin(P[i], sigma * k[i]));
     for (int d = 0; d < 3; d++) F[3 * (size_t) i + d] += push * (of[1 + d] + of[5 + d] - G[d]);
   }
 }

@@ -49,12 +49,14 @@
 
 SD_BEGIN_C
 
-/* What a plane surface at z = 2 h k / (SD_SPH_DEPTHS - 1) hides; by quadrature, once. */
-enum { SD_SPH_DEPTHS = 201 };
+/* What a plane surface at z = 2 h k / (SD_SPH_DEPTHS - 1) hides; by quadrature, once. start[m]: the interval
+ * of S0 that has 1/2 + m / (2 SD_SPH_STARTS) in it. W0: W(0). */
+enum { SD_SPH_DEPTHS = 201, SD_SPH_STARTS = 256 };
 typedef struct {
   sd_sph_kernel kernel;
   int dimension;
-  double h, S0[SD_SPH_DEPTHS], beta[SD_SPH_DEPTHS];
+  double h, W0, S0[SD_SPH_DEPTHS], beta[SD_SPH_DEPTHS];
+  unsigned char start[SD_SPH_STARTS + 1];
 } sd_sph_surface;
 void sd_sph_surface_make(sd_sph_kernel kernel, int dimension, double h, sd_sph_surface *s);
 
@@ -70,45 +72,63 @@ typedef struct {
   const sd_sph_surface *surface;
   const sd_sph_both *list;
   int all;
-  /* [4 (all+1)] x y z V; V is 0 of atoms that are no particles */
+  /* [4 (all+1)] x y z and V; - V of those whose support is whole, but for walls; 0 of atoms that are no
+   * particles, and of the far-away one */
   const double *x4;
   /* [all+1] 1: of a wall; NULL: there are no walls */
   const int *wall;
-  /* [all] 1: the support is whole, but for walls. NULL: not known of any */
-  const char *inside;
   /* [count] those of this rank that somebody with w > 0 may have in reach, in their order. The others are
-   * deep: loops pass over them. Their curvatures, forces and areas are 0, their other rows below are left
-   * as they are. NULL: all n are near */
+   * deep: loops pass over them, and leave their rows as they are. NULL: all n are near */
   const int *near;
   int count;
 } sd_sph_film;
 #define SD_SPH_WHOLE 0.95
 
+/* The skin: particles of this rank that are at the surface, w > 0, and their neighbours that may be at one or
+ * in a wall. Room for as many as are near. */
+typedef struct {
+  /* who they are, their neighbours, as rows of the list, and how many */
+  int *who;
+  const int **neighbor;
+  int *count;
+  /* [sd_sph_skin_size] the neighbours, where there are no walls; with walls they are those of the list */
+  int *pool;
+  /* w_b V_b W of the neighbours [sd_sph_skin_weights], from weight[first] on */
+  size_t *first;
+  double *weight;
+  /* [SD_SPH_SKIN_SUMS] each: M | N | sum w V W | sum w V g (v.d)/r^2 d | 0 */
+  double *turns;
+  /* [2] each: w V W(0), and one over the sum w V W with that */
+  double *own;
+  /* how many */
+  int size;
+} sd_sph_skin;
+enum { SD_SPH_SKIN_SUMS = 20 };
+
 /* What is found of the particles, one after the other; each function below says what it fills, and reads what
  * those before it have filled. */
-enum { SD_SPH_SKIN_SUMS = 20 };
 typedef struct {
-  /* [8 n] S Gf | Sw Gw */
+  /* [8 n] S Gf | Sw Gw; not without walls of those whose support is whole: nearly all of them no surface
+   * reaches */
   double *sums;
   /* [8 n] sum c V W | sum c V g d | sum V W cos, sum V W sin, sum V W | 0 over walls, of fluid with Sw > 0, 0
    * elsewhere; NULL without walls */
   double *beside;
-  /* [4 n] S G with wet walls */
+  /* [4 n] S G with wet walls; when curvatures have been carried inwards, of all fluid that is near, but with
+   * sum w V W in the place of S where w = 0 */
   double *whole;
-  /* [4 (all+1)] normal, w; 0 0 0 -1 of wall particles; row `all` is 0 */
+  /* [4 (all+1)] normal, w; 0 0 0 -1 of wall particles; of others 0. When curvatures have been carried inwards
+   * the first number of w > 0 is ks instead. */
   double *surface;
   /* [8 n] the normal of the contact angle, nw | u, l; NULL without walls */
   double *at_wall;
-  /* [SD_SPH_SKIN_SUMS n] M | N | sum w V W | sum w V g (v.d)/r^2 d | 0, where w > 0; of other fluid
-   * sum w V W */
-  double *turns;
 } sd_sph_film_rows;
 
-/* Fills sums, own V W(0) contained; without walls that alone of those inside, most of which no surface
- * reaches. */
-void sd_sph_film_sums(const sd_sph_film *f, const sd_sph_film_rows *rows);
+/* Room for the neighbours of the skin; fills sums, and finds who may be in the skin. */
+size_t sd_sph_skin_size(const sd_sph_film *f);
+void sd_sph_film_sums(const sd_sph_film *f, const sd_sph_film_rows *rows, sd_sph_skin *skin);
 
-/* c of wall particles, 0 of others: wet [n]. */
+/* c of wall particles, 0 of others that are near: wet [n]. */
 void sd_sph_film_wetness(const sd_sph_film *f, const sd_sph_film_rows *rows, double *wet);
 
 /* Fills beside, with c, cos and sin of the contact angle, and 1 of wall particles, 0 of others, as rows of
@@ -118,43 +138,30 @@ void sd_sph_film_wet_walls(const sd_sph_film *f, const double *contact, const sd
 /* Fills whole, at_wall and, but for ghosts, surface, which is 0 before. */
 void sd_sph_film_normals(const sd_sph_film *f, const sd_sph_film_rows *rows);
 
-/* Pairs of particles of the surface: those of the k-th that is not deep are first[k] .. first[k+1] - 1, with
- * w_b V_b W; and who shows others a normal, as particle of the surface or of a wall. Room for first [n+1] and
- * shows [all+1], and for sd_sph_skin_size neighbours and weights. */
-typedef struct {
-  size_t *first;
-  char *shows;
-  int *neighbor;
-  double *weight;
-} sd_sph_skin;
-size_t sd_sph_skin_size(const sd_sph_film *f, const sd_sph_film_rows *rows);
-
-/* Finds the skin, kappa [n] of particles with w > 0, 0 elsewhere, and their turns; v4 [4 (all+1)] v,
- * unused. */
+/* Room for the weights of the skin; finds the skin, its turns and its kappa, once after sd_sph_film_sums. v4
+ * [4 (all+1)] v, unused; nothing is read of those whose support is whole where there are no walls. */
+size_t sd_sph_skin_weights(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin);
 void sd_sph_film_curvatures(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *v4,
-                            const sd_sph_skin *skin, double *kappa);
+                            sd_sph_skin *skin, double *kappa);
 
-/* <k> [n] of k [all+1], 0 where w is 0. */
-void sd_sph_film_means(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin,
-                       const double *k, double *mean);
+/* <k> of the skin, of k [all+1], 0 where w is 0. */
+void sd_sph_film_means(const sd_sph_skin *skin, const double *k, double *mean);
 
-/* ks [n] of kappa, <kappa> and <<kappa>>, in the place of once or twice: those that are far from the
- * surface keep their 0. */
-void sd_sph_film_sharpen(const sd_sph_film *f, const sd_sph_film_rows *rows, const double *kappa,
-                         const double *once, const double *twice, double *ks);
+/* ks of the skin, in the place of <kappa>; of kappa, <kappa> and <<kappa>>. */
+void sd_sph_film_sharpen(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin,
+                         const double *kappa, double *once, const double *twice);
 
-/* k [n] of ks [all+1]: inwards, as far as the surface reaches; turns then say of all fluid whether it does,
- * and whole has its G. */
+/* k of fluid that is near, of ks [all+1], 0 where w is 0. */
 void sd_sph_film_inwards(const sd_sph_film *f, const sd_sph_film_rows *rows, const sd_sph_skin *skin,
                          const double *ks, double *k);
 
 /* F [3 n] of k, and area [n]: the share of each particle in that of the surface of the fluid, 2 V |G| where
- * the surface reaches, without that on walls. friction: mu_s. */
+ * the surface reaches, without that on walls; both 0 before. friction: mu_s. */
 typedef struct {
   double sigma, friction;
 } sd_sph_tension;
 void sd_sph_tension_forces(const sd_sph_film *f, const sd_sph_tension *t, const sd_sph_film_rows *rows,
-                           const double *k, double *F, double *area);
+                           const sd_sph_skin *skin, const double *k, double *F, double *area);
 
 /* Adds to F [3 n] what takes back the push of dry walls; P [n]: pressure, of fluid. */
 void sd_sph_dry_walls(const sd_sph_film *f, double sigma, const sd_sph_film_rows *rows, const double *k,

@@ -16,10 +16,11 @@ typedef struct {
   double x4[4 * (MOST + 1)], v4[4 * (MOST + 1)];
   double sums[8 * MOST], beside[8 * MOST], contact[4 * (MOST + 1)], whole[4 * MOST];
   double surface[4 * (MOST + 1)], at_wall[8 * MOST], kappa[MOST + 1], F[3 * MOST], area[MOST];
-  double turns[SD_SPH_SKIN_SUMS * MOST], k[MOST];
+  double turns[SD_SPH_SKIN_SUMS * MOST], own_of_skin[2 * MOST], k[MOST];
   sd_sph_film_rows rows;
-  size_t first[MOST + 1];
-  char shows[MOST + 1];
+  size_t first[MOST];
+  int who[MOST], count_of_skin[MOST];
+  const int *skin_of[MOST];
   sd_sph_skin skin;
   sd_sph_surface plane;
   sd_sph_both list;
@@ -32,7 +33,7 @@ static inline drop *begin(int dimension, double h)
 {
   drop *s = &all_of_it;
   free(s->pool);
-  free(s->skin.neighbor);
+  free(s->skin.pool);
   free(s->skin.weight);
   memset(s, 0, sizeof(*s));
   sd_sph_surface_make(SD_SPH_WENDLAND, dimension, h, &s->plane);
@@ -77,9 +78,9 @@ static inline void find_neighbours(drop *s, int walls)
   }
   for (int d = 0; d < 3; d++) s->x4[4 * s->n + d] = 1e10;
   s->list = (sd_sph_both){s->n, s->neighbor, s->own, s->count};
-  s->film = (sd_sph_film){&s->plane, &s->list, s->n, s->x4, walls ? s->wall : NULL, NULL, NULL, 0};
+  s->film = (sd_sph_film){&s->plane, &s->list, s->n, s->x4, walls ? s->wall : NULL, NULL, 0};
   s->rows = (sd_sph_film_rows){s->sums,    walls ? s->beside : NULL,  s->whole,
-                               s->surface, walls ? s->at_wall : NULL, s->turns};
+                               s->surface, walls ? s->at_wall : NULL};
 }
 
 /* Rings of particles of one volume, as a drop at rest has them; 2-D. */

@@ -4,29 +4,41 @@
 
 #include "surface_drop.h"
 
-/* The curvatures, with a skin of its own */
+/* The curvatures of what is at the surface */
 static void bend(drop *s)
 {
-  const size_t room = sd_sph_skin_size(&s->film, &s->rows);
-  free(s->skin.neighbor);
   free(s->skin.weight);
-  s->skin = (sd_sph_skin){s->first, s->shows, malloc(sizeof(int) * room), malloc(sizeof(double) * room)};
+  s->skin.weight = malloc(sizeof(double) * (sd_sph_skin_weights(&s->film, &s->rows, &s->skin) + 1));
+  memset(s->kappa, 0, sizeof(s->kappa));
   sd_sph_film_curvatures(&s->film, &s->rows, s->v4, &s->skin, s->kappa);
+}
+
+static void forces(drop *s, double sigma, double friction)
+{
+  const sd_sph_tension how = {sigma, friction};
+  memset(s->F, 0, sizeof(s->F));
+  memset(s->area, 0, sizeof(s->area));
+  sd_sph_tension_forces(&s->film, &how, &s->rows, &s->skin, s->k, s->F, s->area);
 }
 
 /* The curvatures inwards, and the forces of that */
 static void pull(drop *s, double sigma, double friction)
 {
-  const sd_sph_tension how = {sigma, friction};
+  memset(s->k, 0, sizeof(s->k));
   sd_sph_film_inwards(&s->film, &s->rows, &s->skin, s->kappa, s->k);
-  sd_sph_tension_forces(&s->film, &how, &s->rows, s->k, s->F, s->area);
+  forces(s, sigma, friction);
 }
 
 /* Up to the curvatures; angle: of all walls. */
 static void look(drop *s, double angle)
 {
   double wet[MOST];
-  sd_sph_film_sums(&s->film, &s->rows);
+  free(s->skin.pool);
+  free(s->skin.weight);
+  s->skin = (sd_sph_skin){s->who, s->skin_of, s->count_of_skin, malloc(sizeof(int) * sd_sph_skin_size(&s->film)),
+                          s->first, NULL, s->turns, s->own_of_skin, 0};
+  memset(s->surface, 0, sizeof(s->surface));
+  sd_sph_film_sums(&s->film, &s->rows, &s->skin);
   if (s->film.wall) {
     sd_sph_film_wetness(&s->film, &s->rows, wet);
     for (int i = 0; i < s->n; i++)
@@ -120,13 +132,14 @@ static void means_keep_a_uniform_curvature(void **state)
   disk(s, 1.0, 0.1, 0.0, 0.0);
   find_neighbours(s, 0);
   look(s, 0.0);
-  double mean[MOST], ks[MOST];
+  double mean[MOST], once[MOST];
   int carried = 0;
   for (int i = 0; i < s->n; i++) s->kappa[i] = 0.7;
-  sd_sph_film_means(&s->film, &s->rows, &s->skin, s->kappa, mean);
-  sd_sph_film_sharpen(&s->film, &s->rows, s->kappa, mean, mean, ks);
+  sd_sph_film_means(&s->skin, s->kappa, mean);
+  memcpy(once, mean, sizeof(mean));
+  sd_sph_film_sharpen(&s->film, &s->rows, &s->skin, s->kappa, once, mean);
   for (int i = 0; i < s->n; i++)
-    if (s->surface[4 * i + 3] > 0.0) CHECK_NEAR(ks[i], 0.7 * (1.0 + 0.16 * 0.2 * 0.7), 1e-14);
+    if (s->surface[4 * i + 3] > 0.0) CHECK_NEAR(once[i], 0.7 * (1.0 + 0.16 * 0.2 * 0.7), 1e-14);
   sd_sph_film_inwards(&s->film, &s->rows, &s->skin, s->kappa, s->k);
   for (int i = 0; i < s->n; i++)
     if (s->k[i] != 0.0) {
@@ -140,7 +153,7 @@ static void means_keep_a_uniform_curvature(void **state)
 static void the_deep_is_out_of_reach_and_bears_nothing(void **state)
 {
   (void) state;
-  static char inside[MOST], marked[MOST], grid[SD_SPH_DEEP_CELLS(MOST)];
+  static uint64_t scratch[SD_SPH_DEEP_SCRATCH(MOST)];
   static int near[MOST];
   static double F[3 * MOST], area[MOST];
   drop *s = begin(2, 0.12);
@@ -150,79 +163,72 @@ static void the_deep_is_out_of_reach_and_bears_nothing(void **state)
   pull(s, 2.5, 0.1);
   memcpy(F, s->F, sizeof(F));
   memcpy(area, s->area, sizeof(area));
-  for (int i = 0; i < s->n; i++) marked[i] = !(inside[i] = !(s->surface[4 * i + 3] > 0.0));
-  const int count = sd_sph_find_near(s->n, s->n, s->x4, marked, 0.24, grid, near);
+  for (int i = 0; i < s->n; i++)
+    if (!(s->surface[4 * i + 3] > 0.0)) s->x4[4 * i + 3] *= -1.0;
+  const int count = sd_sph_find_near(2, s->n, s->n, s->x4, 0.24, scratch, near);
   for (int i = 0, k = 0; i < s->n; i++) {
-    if (k < count && near[k] == i) {
-      k++;
-      continue;
-    }
-    for (int j = 0; j < s->n; j++) assert_true(!marked[j] || distance(s, i, j) > 0.24);
+    const int is_near = k < count && near[k] == i;
+    k += is_near;
+    double least = 1.0;
+    for (int j = 0; j < s->n; j++)
+      if (s->x4[4 * j + 3] > 0.0) least = fmin(least, distance(s, i, j));
+    assert_true(is_near ? least < 1.61 * 0.24 : least > 0.24);
   }
-  assert_true(count < 2 * s->n / 3);
-  s->film.inside = inside;
+  assert_true(count < s->n / 2);
   s->film.near = near;
   s->film.count = count;
-  for (int i = 0; i < s->n; i++) s->sums[8 * i] = s->whole[4 * i] = s->turns[SD_SPH_SKIN_SUMS * i + 15] = NAN;
+  for (int i = 0; i < s->n; i++) s->sums[8 * i] = s->whole[4 * i] = NAN;
   look(s, 0.0);
   pull(s, 2.5, 0.1);
   for (int i = 0; i < s->n; i++) CHECK_NEAR(s->area[i], area[i], 1e-14);
   for (int i = 0; i < 3 * s->n; i++) CHECK_NEAR(s->F[i], F[i], 1e-14);
 }
 
-/* The topmost layer of a lattice is a plane, and below it there are some in reach all the same; few particles have room
- * for their cells too. */
-static void a_plane_has_those_below_it_near(void **state)
+/* Random points in boxes that need one word of cells along x, two or many, in two dimensions and three, with room for
+ * all cells and for few: nobody in reach is missing. */
+static void nobody_in_reach_is_missing(void **state)
 {
   (void) state;
-  static char marked[MOST], grid[SD_SPH_DEEP_CELLS(MOST)];
-  static int near[MOST];
-  for (int high = 1; high <= 12; high += 11) {
-    drop *s = begin(3, 0.2);
-    for (int k = 0; k < 16 * high; k++)
-      add(s, 0.1 * (k % 4), 0.1 * (k / 4 % 4), -0.1 * (double) (k / 16), 1e-3, 0);
-    memset(marked, 0, sizeof(marked));
-    memset(marked, 1, 16);
-    const int count = sd_sph_find_near(s->n, s->n, s->x4, marked, 0.25, grid, near);
-    assert_true(count >= (high == 1 ? 16 : 48) && count <= 16 * 8);
-    for (int k = 0; k < count; k++) assert_true(near[k] == k);
+  static uint64_t scratch[SD_SPH_DEEP_SCRATCH(400)];
+  static const double along[4] = {1.0, 3.0, 20.0, 300.0}, across[4] = {1.0, 3.0, 0.3, 1.0};
+  uint64_t seed = 6;
+  for (int round = 0; round < 80; round++) {
+    const int dimension = 2 + round % 2, k = round / 2 % 4;
+    double x4[1600];
+    int near[400], is_near[400] = {0};
+    for (int i = 0; i < 400; i++) {
+      for (int d = 0; d < 3; d++) x4[4 * i + d] = uniform(&seed, d == 0 ? -along[k] : -across[k], 0.0);
+      if (dimension == 2) x4[4 * i + 2] = 0.0;
+      x4[4 * i + 3] = uniform(&seed, -19.0, 1.0);
+    }
+    const int count = sd_sph_find_near(dimension, 400, 300, x4, 0.7, scratch, near);
+    for (int m = 0; m < count; m++) is_near[near[m]] = 1;
+    for (int i = 0; i < 300; i++)
+      for (int j = 0; j < 400; j++) {
+        const double *a = x4 + 4 * i, *b = x4 + 4 * j, d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+        if (b[3] > 0.0 && d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < 0.49) assert_true(is_near[i]);
+      }
   }
 }
 
-/* A place that is no number or infinite is near nobody and has nobody near it; nothing outside the grid is written. */
+/* A place that is no number or infinite is near nobody and has nobody near it; nothing outside the scratch is
+ * written. */
 static void a_place_that_is_no_number_is_near_nobody(void **state)
 {
   (void) state;
+  enum { ROOM = SD_SPH_DEEP_SCRATCH(4), AROUND = 128 };
   static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL};
   for (int k = 0; k < 3; k++)
     for (int d = 0; d < 3; d++) {
-      double x4[16] = {0};
-      char marked[4] = {1, 1, 0, 0}, grid[SD_SPH_DEEP_CELLS(4) + 256], *cells = grid + 128;
+      double x4[16] = {[3] = 1.0, [7] = 1.0, [8] = 0.9, [12] = 40.0};
+      uint64_t scratch[ROOM + 2 * AROUND];
       int near[4];
-      memset(grid, 76, sizeof(grid));
+      for (int c = 0; c < ROOM + 2 * AROUND; c++) scratch[c] = 76;
       x4[d] = bad[k];
-      x4[8] = 0.9;
-      x4[12] = 40.0;
-      assert_int_equal(sd_sph_find_near(4, 4, x4, marked, 1.0, cells, near), 2);
+      assert_int_equal(sd_sph_find_near(3, 4, 4, x4, 1.0, scratch + AROUND, near), 2);
       assert_true(near[0] == 1 && near[1] == 2);
-      for (int c = 0; c < 128; c++) assert_true(grid[c] == 76 && cells[SD_SPH_DEEP_CELLS(4) + (size_t) c] == 76);
+      for (int c = 0; c < AROUND; c++) assert_true(scratch[c] == 76 && scratch[AROUND + ROOM + c] == 76);
     }
-}
-
-/* The highest one is a rounding below three sides above the lowest: two cells behind its own, which is the fifth of
- * seven, are the last. */
-static void a_place_that_rounds_up_stays_in_its_cell(void **state)
-{
-  (void) state;
-  const double side = 0.5 * (1.0 + 1e-9);
-  char marked[2] = {1, 1}, grid[SD_SPH_DEEP_CELLS(2)];
-  double x4[8] = {0};
-  int near[2];
-  x4[6] = 3.0 * side;
-  while (x4[6] / side >= 3.0) x4[6] = nextafter(x4[6], 0.0);
-  memset(grid, 76, sizeof(grid));
-  assert_int_equal(sd_sph_find_near(2, 2, x4, marked, 1.0, grid, near), 2);
-  assert_true(grid[6] == 1 && grid[7] == 76);
 }
 
 /* Its mean is its own, and nothing is read that nobody has written. */
@@ -235,13 +241,13 @@ static void a_lone_particle_has_its_own_curvature(void **state)
   find_neighbours(s, 0);
   look(s, 0.0);
   assert_true(s->surface[3] > 0.0 && s->surface[7] > 0.0);
-  double mean[2] = {NAN, NAN};
+  double mean[2] = {NAN, -1.0};
   s->surface[7] = 0.0;    // as of a particle inside
   bend(s);
   s->kappa[0] = 0.7;
-  sd_sph_film_means(&s->film, &s->rows, &s->skin, s->kappa, mean);
+  sd_sph_film_means(&s->skin, s->kappa, mean);
   CHECK_NEAR(mean[0], 0.7, 1e-15);
-  CHECK_NEAR(mean[1], 0.0, 0.0);
+  CHECK_NEAR(mean[1], -1.0, 0.0);    // no row of the skin
 }
 
 /* <k> of a particle is the sum over its neighbours, one by one. */
@@ -255,7 +261,7 @@ static void means_are_sums_over_the_surface(void **state)
   look(s, 0.0);
   double mean[MOST];
   for (int i = 0; i < s->n; i++) s->kappa[i] = uniform(&seed, 1.0, 2.0);
-  sd_sph_film_means(&s->film, &s->rows, &s->skin, s->kappa, mean);
+  sd_sph_film_means(&s->skin, s->kappa, mean);
   for (int i = 0; i < s->n; i++) {
     double sum = 0.0, whole = 0.0;
     for (int j = 0; j < s->n; j++) {
@@ -279,8 +285,7 @@ static void a_uniform_curvature_pushes_as_a_pressure(void **state)
   look(s, 0.0);
   sd_sph_film_inwards(&s->film, &s->rows, &s->skin, s->kappa, s->k);
   for (int i = 0; i < s->n; i++) s->k[i] = 0.7;
-  const sd_sph_tension how = {2.5, 0.0};
-  sd_sph_tension_forces(&s->film, &how, &s->rows, s->k, s->F, s->area);
+  forces(s, 2.5, 0.0);
   double whole = 0.0;
   for (int i = 0; i < s->n; i++) whole += s->area[i];
   CHECK_NEAR(whole, 6.283, 0.4);
@@ -309,8 +314,7 @@ static void friction_of_the_surface_keeps_momentum_and_its_moment_and_takes_ener
   sd_sph_film_inwards(&s->film, &s->rows, &s->skin, s->kappa, s->k);
   memset(s->k, 0, sizeof(s->k));
   double sum[3] = {0.0}, size = 0.0, power = 0.0;
-  const sd_sph_tension how = {2.5, 0.3};
-  sd_sph_tension_forces(&s->film, &how, &s->rows, s->k, s->F, s->area);
+  forces(s, 2.5, 0.3);
   for (int i = 0; i < s->n; i++) {
     const double *x = s->x4 + 4 * i, *F = s->F + 3 * i;
     sum[0] += F[0];
@@ -412,8 +416,7 @@ static void a_uniform_pressure_holds_a_drop_on_its_wall(void **state)
     s->k[i] = k;
     P[i] = i % 2 ? sigma * k : 3.0 * sigma * k;
   }
-  const sd_sph_tension how = {sigma, 0.0};
-  sd_sph_tension_forces(&s->film, &how, &s->rows, s->k, s->F, s->area);
+  forces(s, sigma, 0.0);
   memcpy(wet, s->F, sizeof(wet));
   sd_sph_dry_walls(&s->film, sigma, &s->rows, s->k, P, s->F);
   double dry = 0.0;
@@ -446,9 +449,8 @@ int main(void)
       cmocka_unit_test(means_are_sums_over_the_surface),
       cmocka_unit_test(a_lone_particle_has_its_own_curvature),
       cmocka_unit_test(the_deep_is_out_of_reach_and_bears_nothing),
-      cmocka_unit_test(a_plane_has_those_below_it_near),
+      cmocka_unit_test(nobody_in_reach_is_missing),
       cmocka_unit_test(a_place_that_is_no_number_is_near_nobody),
-      cmocka_unit_test(a_place_that_rounds_up_stays_in_its_cell),
       cmocka_unit_test(a_uniform_curvature_pushes_as_a_pressure),
       cmocka_unit_test(friction_of_the_surface_keeps_momentum_and_its_moment_and_takes_energy),
       cmocka_unit_test(a_wedge_with_its_contact_angle_is_plane),
