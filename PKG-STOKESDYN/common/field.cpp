@@ -23,33 +23,42 @@ Field Field::parse(Keywords &in, Kind kind)
 
 int Field::index(LAMMPS *lmp) const
 {
-  return lmp->input->variable->find(const_cast<char *>(name.c_str()));    // char * in older versions
+  Variable *variable = lmp->input->variable;
+  const int i = variable->find(const_cast<char *>(name.c_str()));    // char * in older versions
+  const Voice what(lmp, keyword);
+  if (i < 0) what.fail("variable '" + name + "' does not exist");
+  if (!variable->atomstyle(i) && !variable->equalstyle(i))
+    what.fail("variable '" + name + "' is neither equal nor atom style");
+  if (variable->atomstyle(i) && kind == ONE_FOR_ALL)
+    what.fail("the variable must be of equal style: one value for all");
+  return i;
 }
 
 void Field::init(LAMMPS *lmp)
 {
-  if (!is_variable()) return;
-  Variable *variable = lmp->input->variable;
+  if (is_variable()) atom_style = lmp->input->variable->atomstyle(index(lmp));
+}
+
+/* Before a run with 'pre no', or among the commands of run ... every, it may have been deleted or made anew. */
+int Field::index_of_run(LAMMPS *lmp) const
+{
   const int i = index(lmp);
-  const Voice what(lmp, keyword);
-  if (i < 0) what.fail("variable '" + name + "' does not exist");
-  atom_style = variable->atomstyle(i);
-  if (!atom_style && !variable->equalstyle(i))
-    what.fail("variable '" + name + "' is neither equal nor atom style");
-  if (atom_style && kind == ONE_FOR_ALL)
-    what.fail("the variable must be of equal style: one value for all");
+  if ((bool) lmp->input->variable->atomstyle(i) != atom_style)
+    Voice(lmp, keyword).fail("variable '" + name + "' is of another style than when the run was prepared: give the "
+                             "next run without 'pre no'");
+  return i;
 }
 
 double Field::evaluate(LAMMPS *lmp)
 {
-  if (is_variable()) value = lmp->input->variable->compute_equal(index(lmp));
+  if (is_variable()) value = lmp->input->variable->compute_equal(index_of_run(lmp));
   return value;
 }
 
 void Field::evaluate(LAMMPS *lmp, int igroup, double *out, int stride)
 {
   if (is_atom_style()) {
-    lmp->input->variable->compute_atom(index(lmp), igroup, out, stride, 0);
+    lmp->input->variable->compute_atom(index_of_run(lmp), igroup, out, stride, 0);
     return;
   }
   evaluate(lmp);

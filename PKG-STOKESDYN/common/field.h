@@ -25,7 +25,8 @@ class Field {
   /* Find the variable. Errors, which name command and keyword: it is missing, or of another style. */
   void init(LAMMPS_NS::LAMMPS *lmp);
   /* out[stride * i] for every atom i that this rank owns; of an atom-style variable, 0 for atoms
-   * outside the group. nullptr, if not of atom style: only number() is brought up to date. */
+   * outside the group. nullptr, if not of atom style: only number() is brought up to date. Errors: the
+   * variable has gone, or has another style, since init(). */
   void evaluate(LAMMPS_NS::LAMMPS *lmp, int igroup, double *out, int stride);
   /* Of a number or an equal-style variable. */
   double evaluate(LAMMPS_NS::LAMMPS *lmp);
@@ -36,8 +37,9 @@ class Field {
   Kind kind = ANY;
   bool atom_style = false;
 
-  /* LAMMPS's index of the variable. */
+  /* LAMMPS's index of the variable. Errors as init(); of_run: or it is of another style than then. */
   int index(LAMMPS_NS::LAMMPS *lmp) const;
+  int index_of_run(LAMMPS_NS::LAMMPS *lmp) const;
 };
 
 }    // namespace StokesDyn

@@ -12,6 +12,7 @@
 #include "neighbor.h"
 #include "output.h"
 #include "region.h"
+#include "update.h"
 
 #if !SD_HAVE_THERMO_H
 #include "library.h"
@@ -131,6 +132,16 @@ namespace Compat {
     const int i = domain->find_region(id.c_str());
     return i < 0 ? nullptr : domain->regions[i];
 #endif
+  }
+
+  /* The same in a step. Before a run with 'pre no' it may have been deleted or made anew, and so may what
+   * it is made of, variables and the regions of a union, which it looks up again in the first step. */
+  inline LAMMPS_NS::Region *region_of_step(LAMMPS_NS::Domain *domain, const LAMMPS_NS::Update *update,
+                                           const std::string &id)
+  {
+    LAMMPS_NS::Region *found = region(domain, id);
+    if (found && update->ntimestep == update->firststep + 1) found->init();
+    return found;
   }
 
   /* nullptr if there is none */

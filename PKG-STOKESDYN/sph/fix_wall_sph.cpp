@@ -118,7 +118,13 @@ FixWallRegionSph::FixWallRegionSph(LAMMPS *lmp, int narg, char **arg) :
 void FixWallRegionSph::init()
 {
   pair = PairSph::of(voice);
-  region = Compat::region(domain, region_id);
+  find_region();
+}
+
+/* A run with 'pre no' may find it deleted or made anew. */
+void FixWallRegionSph::find_region()
+{
+  region = Compat::region_of_step(domain, update, region_id);
   if (!region) voice.fail("region '" + region_id + "' does not exist");
 }
 
@@ -126,6 +132,7 @@ void FixWallRegionSph::init()
 void FixWallRegionSph::post_force(int /*vflag*/)
 {
   for (double &f : on_wall) f = 0.0;
+  find_region();
   region->prematch();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;

@@ -50,6 +50,7 @@ class FixWallRegionSph : public FixRepulsiveWall {
  private:
   std::string region_id;
   LAMMPS_NS::Region *region = nullptr;
+  void find_region();
   PairSph *pair = nullptr;
 };
 

@@ -104,8 +104,9 @@ void PairSph::compute(int eflag, int vflag)
 {
   require_prepared();
   if (roles.continuity && !begun)
-    voice.fail("cannot be used with rerun: a dump file has no densities for fix sph/density/continuity; use pair_style "
-               "zero for what needs no forces of the water, or restart files");
+    voice.fail("cannot be used with rerun, dynamical_matrix and third_order: densities of fix sph/density/continuity "
+               "go on in runs, and a dump file has none; use pair_style zero for what needs no forces of the water, "
+               "or restart files");
   if (roles.continuity) refuse_again();
   ev_init(eflag, vflag);
   listed = {atom->nlocal, atom->nghost};
@@ -134,9 +135,12 @@ void PairSph::compute(int eflag, int vflag)
 }
 
 /* For compute pair/local and its like below a hybrid, which ask all styles of it: the forces of this one
- * need more than a pair, so its share is 0. Alone it has no answer (init_style). */
+ * need more than a pair, so its share is 0. Alone it has no answer: computes see that (init_style),
+ * pair_write asks before. */
 double PairSph::single(int, int, int, int, double, double, double, double &fforce)
 {
+  if (force->pair == this)
+    voice.fail("forces depend on more than a distance, on densities and velocities: pair_write has nothing to write");
   fforce = 0.0;
   return 0.0;
 }

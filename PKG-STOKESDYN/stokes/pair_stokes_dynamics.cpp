@@ -85,9 +85,10 @@ bool PairStokesDynamics::asked_again() const
 }
 
 /* For compute pair/local and its like below a hybrid, which ask all styles of it: drag is no force of a
- * pair, so its share is 0. Alone it has no answer (init_style). */
+ * pair, so its share is 0. Alone it has no answer: computes see that (init_style), pair_write asks before. */
 double PairStokesDynamics::single(int, int, int, int, double, double, double, double &fforce)
 {
+  if (force->pair == this) voice.fail("a drag is no force between two atoms: pair_write has nothing to write");
   fforce = 0.0;
   return 0.0;
 }

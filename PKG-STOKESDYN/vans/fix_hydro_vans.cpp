@@ -87,17 +87,22 @@ void FixHydroVans::check_box() const
                      ", so that its area follows the grains: give the area of the stream");
 }
 
-/* What the keywords name must still be there. */
-void FixHydroVans::find_names()
+/* A run with 'pre no' may find them deleted or made anew. */
+void FixHydroVans::find_region()
 {
-  region = set.region.empty() ? nullptr : Compat::region(domain, set.region);
+  region = set.region.empty() ? nullptr : Compat::region_of_step(domain, update, set.region);
   if (!set.region.empty() && !region)
     set.voice.fail("keyword region: region '" + set.region + "' does not exist");
-  if (region) region->init();
   const int average_group = group->find(set.average.c_str());
   if (average_group < 0)
     set.voice.fail("keyword average: group '" + set.average + "' does not exist");
   average_bit = group->bitmask[average_group];
+}
+
+/* What the keywords name must still be there. */
+void FixHydroVans::find_names()
+{
+  find_region();
   for (const Given &each : givens()) each.field.init(lmp);
   if (set.overlap_once && !atom->molecule)
     set.voice.fail("keyword overlap: molecule IDs are needed to know the clumps");
@@ -220,6 +225,7 @@ void FixHydroVans::post_force(int /*vflag*/)
   const Sums before = local;
   local = Sums();
   if (!set.has_grains()) return;
+  find_region();
   look_at_gravity();
   select(groupbit);
   if (set.law.added_mass > 0.0) find_accelerations(moment);

@@ -3,6 +3,7 @@
 #include "ranks.h"
 
 #include "atom.h"
+#include "domain.h"
 #include "region.h"
 #include "update.h"
 
@@ -26,9 +27,22 @@ void FixHydroVans::select(int bit, bool not_in_group)
                          text(atom->radius[i]) + "; it must be a number > 0, or 0 for what is no grain");
     take[i] = (atom->mask[i] & bit) && atom->radius[i] > 0.0 &&
         !(not_in_group && (atom->mask[i] & groupbit));
-    if (take[i] && region)
-      take[i] = region->match(atom->x[i][0], atom->x[i][1], atom->x[i][2]) != 0;
+    if (take[i] && region) take[i] = in_region(atom->x[i]);
   }
+}
+
+/* By the place in the box, as LAMMPS wraps a grain only when it re-neighbours. remap() goes box by box: not for one
+ * that has blown up. */
+bool FixHydroVans::in_region(const double *at) const
+{
+  double x[3];
+  bool near = true;
+  for (int d = 0; d < 3; d++) {
+    x[d] = at[d];
+    near = near && fabs(x[d] - domain->boxlo[d]) < 10.0 * (domain->xprd + domain->yprd + domain->zprd);
+  }
+  if (near) domain->remap(x);
+  return region->match(x[0], x[1], x[2]) != 0;
 }
 
 /* The atoms of this rank, those that `take` says. */

@@ -27,15 +27,21 @@ static bool finite(const double *v)
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
 
-void Ambient::init()
+/* A run with 'pre no' may find them deleted or made anew. */
+void Ambient::find_names()
 {
   region = nullptr;
-  if (!settings.region.empty() && !(region = Compat::region(domain, settings.region)))
+  if (!settings.region.empty() && !(region = Compat::region_of_step(domain, update, settings.region)))
     voice.fail("keyword region: region '" + settings.region + "' does not exist");
   igroup = group->find(settings.group);
   if (igroup < 0)
     voice.fail("keyword group: group '" + settings.group + "' does not exist");
   groupbit = group->bitmask[igroup];
+}
+
+void Ambient::init()
+{
+  find_names();
   settings.visc.init(lmp);
   for (Field &field : settings.velocity) field.init(lmp);
   for (Field &field : settings.vorticity) field.init(lmp);
@@ -247,6 +253,7 @@ void Ambient::fill_group()
  * re-neighbours. */
 void Ambient::select()
 {
+  find_names();
   fill_group();
   const bool stands = group_stands();
   if (stands && !region) return;
@@ -272,8 +279,9 @@ void Ambient::select()
   epochs.selection.advance();
 }
 
-std::vector<char> Ambient::chosen_now() const
+std::vector<char> Ambient::chosen_now()
 {
+  find_names();
   std::vector<char> chosen(atom->nlocal + 1, 0);
   if (region) region->prematch();
   for (int i = 0; i < atom->nlocal; i++) {

@@ -96,7 +96,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
   const double *jumps() const { return jumping ? jump : nullptr; }
 
   /* Before a run, since init(): [nlocal] who would take part where the atoms are now */
-  std::vector<char> chosen_now() const;
+  std::vector<char> chosen_now();
 
   const std::vector<char> &active() const { return takes_part; }
   /* The atoms of this rank that take part, in their order. While Epochs::selection stands, nobody
@@ -201,6 +201,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
   void grid_at(const std::vector<double> &x, std::vector<double> &out) const;
   std::vector<double> formulas_at(const std::vector<double> &x);
   bool group_stands() const;
+  void find_names();
   void fill_group();
   void read_fluid(Derivatives derivatives);
   std::vector<double> values() const;

@@ -60,6 +60,9 @@ std::string Drives::holds() const
 
 void Drives::find(const Torques::Turned &turned)
 {
+  held.find(voice.of("keyword held"));
+  pinned.find(voice.of("keyword pin"));
+  spin.find();
   squirmers.find();
   torques.find(directions, turned);
 }

@@ -15,7 +15,8 @@ struct KeywordGroup {
   int number = 0, bit = 0;
 
   bool on() const { return !name.empty(); }
-  /* Before a run. Error: there is no such group. keyword: who complains, "...: keyword NAME" */
+  /* Before a run, and in each step, as a run with 'pre no' may find it deleted or made anew. Error: there is
+   * no such group. keyword: who complains, "...: keyword NAME" */
   void find(const Voice &keyword);
   /* Error: an atom of it that is not in the group of the fix, which has this bit */
   void require_moved(const Voice &keyword, int by_bit) const;

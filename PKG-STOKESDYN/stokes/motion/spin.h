@@ -32,6 +32,8 @@ class Spin : protected LAMMPS_NS::Pointers {
   /* Before a run. Errors: a group that does not exist; settings under which no sphere spins; spheres
    * of it that are in clumps, or held. */
   void init(const Hydrodynamics &hydro, int held_bit);
+  /* In each step. Error: the group has gone since. */
+  void find() { whom.find(voice.of("keyword spin")); }
 
   /* Is the angular velocity W of atom i given now? */
   bool turns(int i, double W[3]) const;

@@ -46,6 +46,7 @@ void Squirmers::init(const Hydrodynamics &hydro, int groupbit)
 void Squirmers::find()
 {
   if (!on()) return;
+  whom.find(voice);
   now.assign(3 * (size_t) atom->nlocal + 3, 0.0);
   modify->clearstep_compute();
   B1.evaluate(lmp, whom.number, now.data(), 3);

@@ -53,6 +53,7 @@ void Torques::init(const Hydrodynamics &hydro, int groupbit, int held_bit)
 void Torques::find(const Directions &directions, const Turned &turned)
 {
   if (!on()) return;
+  whom.find(voice);
   now.assign(3 * (size_t) atom->nlocal + 3, 0.0);
   modify->clearstep_compute();
   for (size_t d = 0; d < 3; d++) T[d].evaluate(lmp, whom.number, now.data() + d, 3);

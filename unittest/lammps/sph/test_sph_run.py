@@ -108,6 +108,17 @@ def test_a_run_that_is_not_prepared_misses_a_fix_that_is_gone(gone):
         lmp.close()
 
 
+def test_a_run_that_is_not_prepared_misses_the_region_of_a_wall():
+    lmp = start()
+    try:
+        run(lmp, scene("region r block INF INF INF INF INF INF\nfix w all wall/region/sph r 1e-4 5\nrun 1\n"
+                       "region r delete"))
+        with pytest.raises(RuntimeError, match="region 'r' does not exist"):
+            run(lmp, "run 1 pre no")
+    finally:
+        lmp.close()
+
+
 def test_a_run_that_is_not_prepared_misses_a_pair_style_that_is_new():
     lmp = start()
     try:

@@ -37,6 +37,47 @@ def test_many_created_atoms(simulation, tmp_path):
     assert sim.n > 20000 and np.array_equal(sim.fix_rows()[:4], before) and not sim.fix_rows()[4:].any()
 
 
+MOVES = "fix move all stokes_dynamics/overdamped"
+# what the pair style has besides, a fix, commands before the first run and between two, what the error says
+NAMES = {
+    "variable of the viscosity": ("visc v_eta", "", "variable eta equal 1.3", "variable eta delete",
+                                  "keyword visc: variable 'eta' does not exist"),
+    "variable of the fluid": ("visc 1.3 fluid_velocity v_u 0 0", "", "variable u atom y", "variable u delete",
+                              "keyword fluid_velocity: variable 'u' does not exist"),
+    "another style": ("visc 1.3 fluid_velocity v_u 0 0", "", "variable u atom y",
+                      "variable u delete\nvariable u equal 0.1",
+                      "keyword fluid_velocity: variable 'u' is of another style than when the run was prepared"),
+    "no value for all": ("visc 1.3 fluid_velocity v_u 0 0", "", "variable u atom y",
+                         "variable u delete\nvariable u string y",
+                         "keyword fluid_velocity: variable 'u' is neither equal nor atom style"),
+    "region": ("visc 1.3 region r", "", "region r sphere 0 0 0 8", "region r delete",
+               "keyword region: region 'r' does not exist"),
+    "part of a region": ("visc 1.3 region r", "", "region s sphere 0 0 0 8\nregion q sphere 1 0 0 8\n"
+                         "region r union 2 s q", "region s delete", "[Rr]egion .*exist"),
+    "group": ("visc 1.3 group g", "", "group g id 1:4", "group g delete", "keyword group: group 'g' does not exist"),
+    "held": ("visc 1.3", MOVES + " held g", "group g id 1 2", "group g delete",
+             "keyword held: group 'g' does not exist"),
+    "pin": ("visc 1.3 rotation yes", MOVES + " pin g", "group g id 1 2", "group g delete",
+            "keyword pin: group 'g' does not exist"),
+    "spin": ("visc 1.3 rotation yes", MOVES + " spin g 0 0 1", "group g id 1 2", "group g delete",
+             "keyword spin: group 'g' does not exist"),
+    "torque": ("visc 1.3 rotation yes", MOVES + " torque g 0 0 1", "group g id 1 2", "group g delete",
+               "keyword torque: group 'g' does not exist"),
+}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_run_that_is_not_prepared_misses_what_keywords_name(simulation, name):
+    """LAMMPS would read another variable's value or freed memory, and a deleted group holds nobody."""
+    more, fix, before, between, says = NAMES[name]
+    sim = simulation(four(), f"cut_off_distance inf algorithm 2 {more}", box=[(-9, 9)] * 3, fix=not fix,
+                     before_pair=before)
+    sim.commands(fix or "fix move all nve/sphere").run(1)
+    sim.commands(between)
+    with pytest.raises(LammpsError, match=says):
+        sim.command("run 1 pre no")
+
+
 @pytest.mark.parametrize("ids", ["1", "2 4"])
 def test_values_of_the_fix_without_inertia_when_atoms_have_other_indices(simulation, ids):
     """Dissipation and largest speed are those of the last step, and the smallest gap that of who is there now."""

@@ -44,15 +44,20 @@ def test_a_hybrid_tells_the_forces_of_the_other_style(tmp_path, model):
     assert len(values[1]) > 0 and values[0] == pytest.approx(values[1], rel=1e-12)
 
 
+@pytest.mark.parametrize("command, says", [("run 0", "does not support compute pair/local"),
+                                           ("pair_write 1 1 5 r 0.01 1 {}/table forces",
+                                            "pair_write has nothing to write")])
 @pytest.mark.parametrize("model", ["sph", "stokes"])
-def test_alone_no_style_says_that_there_are_no_forces(tmp_path, model):
+def test_alone_no_style_says_that_there_are_no_forces(tmp_path, model, command, says):
     lines = [line for line in contacts(model, True) if not line.startswith(("pair_", "run"))]
+    if command != "run 0":
+        lines = [line for line in lines if not line.startswith(("compute", "dump"))] + 4 * ["echo none"]
     lines.insert(-4, {"sph": "pair_style sph/artVisc/tensCorr wendland 0.2",
                       "stokes": "pair_style stokes_dynamics cut_off_distance inf visc 1"}[model])
     lines.insert(-4, "pair_coeff * *")
     sim = Simulation(tmp_path)
     try:
-        with pytest.raises(LammpsError, match="does not support compute pair/local"):
-            sim.commands(lines + ["run 0"])
+        with pytest.raises(LammpsError, match=says):
+            sim.commands(lines + [command.format(tmp_path)])
     finally:
         sim.close()

@@ -167,6 +167,33 @@ def test_region_and_group_choose_the_grains():
     s.close()
 
 
+def test_a_grain_beyond_the_edge_of_the_box_is_where_its_image_is():
+    """LAMMPS wraps it only when it re-neighbours. A region that ends at the edge has it all the while."""
+    rows = []
+    for along in ("INF INF", "0 0.02"):
+        s = Scene()
+        s.spheres([[0.0199, 0.01, 0.0105]], [[1, 0, 0]], 0.001)
+        s.do(f"region r block {along} 0 0.02 INF INF units box", "fix move all nve/sphere",
+             f"fix h all hydro/vans 1 mesh 20 0.001 0 {WATER} couple one stream rest region r", "run 20")
+        assert s.atoms("x")[0, 0] > 0.02
+        rows.append(np.append(s.atoms("f_h"), s.column("phi", 20)))
+        s.close()
+    assert rows[0].any() and np.array_equal(*rows)
+
+
+@pytest.mark.parametrize("gone, says", [("region r delete", "keyword region: region 'r' does not exist"),
+                                        ("variable g delete", "keyword gravity: variable 'g' does not exist")])
+def test_a_run_that_is_not_prepared_misses_what_keywords_name(gone, says):
+    s = Scene()
+    s.spheres([[0.01, 0.01, 0.0105]], np.zeros((1, 3)), 0.001)
+    s.do("region r block INF INF INF INF INF INF", "variable g equal 0", "fix move all nve/sphere",
+         "fix h all hydro/vans 1 mesh 20 0.001 0 fluid 1000 0.001 gravity v_g 0 -9.81 couple one stream rest region r",
+         "run 2", gone)
+    with pytest.raises(Exception, match=says):
+        s.do("run 2 pre no")
+    s.close()
+
+
 def test_overlaps_of_clumps_count_once():
     """Two equal spheres: the union by the formula of the lens; and as a rigid body that settles under the stream's
     force on both members."""
