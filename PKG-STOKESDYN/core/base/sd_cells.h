@@ -76,9 +76,12 @@ static inline sd_cell *sd_cells_slot(const sd_cells *c, int64_t i, int64_t j, in
   }
 }
 
+/* What is no number, or farther than 2^50 sides away, is in one cell: a walk around it has a few, and ends.
+ * Doubles that are larger do not tell one cell from the next. */
 static inline int64_t sd_cells_along(const sd_cells *c, double x)
 {
-  return sd_whole_below(x / c->side);
+  const double at = x / c->side;
+  return fabs(at) < 0x1p50 ? sd_whole_below(at) : -(INT64_C(1) << 50);
 }
 
 static inline sd_cells_walk sd_cells_near(const sd_cells *c, const double *place, double radius)

@@ -1,4 +1,4 @@
-/* Points in order of cells. */
+/* Points in order of cells; places that have no cell of their own. */
 #include "check.h"
 
 #include "sd_cells.h"
@@ -55,11 +55,39 @@ static void any_points_are_sorted(void **state)
   assert_int_equal(found, 31);
 }
 
+/* Places that are no numbers, or so far off that numbers do not tell cells: a walk around them is short, and passes
+ * their cell. */
+static void a_walk_ends_wherever_it_begins(void **state)
+{
+  (void) state;
+  const double lo[3] = {0.0, 0.0, 0.0}, far[] = {-1e30, 1e30, -3e18, 3e18, 5e14, -INFINITY, INFINITY, NAN, 1.0};
+  enum { PLACES = sizeof(far) / sizeof(far[0]) };
+  double x[3 * PLACES];
+  sd_cells c = {0};
+  assert_int_equal(sd_cells_create(&c, PLACES), SD_OK);
+  sd_cells_clear(&c, lo, 0.7);
+  for (int i = 0; i < PLACES; i++) {
+    for (int d = 0; d < 3; d++) x[3 * i + d] = d == i % 3 ? far[i] : 1.0;
+    sd_cells_add(&c, x, i);
+  }
+  for (int i = 0; i < PLACES; i++) {
+    int found = 0, steps = 0;
+    sd_cells_walk w = sd_cells_near(&c, x + 3 * i, 0.5);
+    for (int d = 0; d < 3; d++) assert_in_range(w.to[d] - w.from[d], 0, 15);
+    for (; sd_cells_step(&c, &w) && steps < 100; steps++)
+      for (int j = w.first; j >= 0; j = c.next[j]) found += j == i;
+    assert_int_equal(found, 1);
+    assert_in_range(steps, 1, 27);
+  }
+  sd_cells_free(&c);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(near_points_stand_side_by_side),
       cmocka_unit_test(any_points_are_sorted),
+      cmocka_unit_test(a_walk_ends_wherever_it_begins),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -125,6 +125,23 @@ static void nobody_is_close_to_nobody(void **state)
   sd_neighbors_free(&list);
 }
 
+/* A small one that has flown off, or is nowhere, is close to nobody, and the search among the large ones ends. */
+static void one_that_is_far_off_is_close_to_nobody(void **state)
+{
+  (void) state;
+  const double far[] = {-1e30, 1e30, -INFINITY, INFINITY, NAN}, a[4] = {0.1, 1.0, 1.0, 0.1}, w[4] = {1, 1, 1, 1};
+  for (int k = 0; k < 15; k++) {
+    double x[12] = {0.0, 0.0, 0.0, 0.1, 0.2, 0.3, 2.2, 0.2, 0.3, 1.2, 0.2, 0.3};
+    const sd_spheres s = {x, a, w};
+    sd_neighbors list = {0};
+    x[k % 3] = far[k / 3];
+    assert_int_equal(sd_near_once(&list, &s, 4, 4, 2.5), SD_OK);
+    assert_int_equal(list.pairs.first[1], 0);
+    assert_int_equal(list.pairs.first[4], 3);
+    sd_neighbors_free(&list);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -132,6 +149,7 @@ int main(void)
       cmocka_unit_test(a_list_of_any_age_has_all_close_pairs),
       cmocka_unit_test(none_is_lost_between_cells),
       cmocka_unit_test(nobody_is_close_to_nobody),
+      cmocka_unit_test(one_that_is_far_off_is_close_to_nobody),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
