@@ -4,6 +4,7 @@
 #include "sd_room.h"
 #include "sd_tensor.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -96,7 +97,7 @@ enum { FEWEST = 12, MOST = 642 };
  * shell; of a large one, more than MOST points add nothing. */
 void sd_surface_share(const sd_shape *s, int n, const double *fraction, int *count)
 {
-  const double most = fmax(MOST, 4.0 * n);
+  const double most = fmin(fmax(MOST, 4.0 * n), INT_MAX);
   double area = 0.0;
   int visible = 0;
   for (int i = 0; i < s->n; i++) {

@@ -337,6 +337,22 @@ static void memory_decides_the_solver(void **state)
   }
 }
 
+/* More points than an int counts, of the larger of two spheres: refused, and not taken for a sphere of one point */
+static void more_points_than_can_be_counted_are_refused(void **state)
+{
+  (void) state;
+  const double x[6] = {0.0, 0.0, 0.0, 1.3, 0.0, 0.0}, a[2] = {1.0, 1e-5};
+  sd_shape shape;
+  sd_clump clump;
+  sd_clump_need need;
+  sd_clump_options o = SD_CLUMP_OPTIONS;
+  o.shell = 2000000000;
+  assert_int_equal(sd_shape_create(2, x, a, &shape), SD_OK);
+  assert_int_equal(sd_clump_create(&shape, &o, &shells, &clump, &need), SD_ENOMEMORY);
+  assert_true(need.points > 2000000000);
+  sd_shape_free(&shape);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -350,6 +366,7 @@ int main(void)
       cmocka_unit_test(hidden_sphere_carries_nothing),
       cmocka_unit_test(equal_spheres_at_one_point_are_refused),
       cmocka_unit_test(memory_decides_the_solver),
+      cmocka_unit_test(more_points_than_can_be_counted_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, free_shells);
 }
