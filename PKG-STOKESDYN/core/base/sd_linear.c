@@ -93,6 +93,12 @@ sd_status sd_cholesky_inverse(int n, double *A)
   return info == 0 ? SD_OK : SD_ESINGULAR;
 }
 
+sd_status sd_inverse(int n, double *A)
+{
+  const sd_status status = sd_cholesky(n, A);
+  return status == SD_OK ? sd_cholesky_inverse(n, A) : status;
+}
+
 /* info of dpotrs is about its arguments alone */
 void sd_cholesky_apply(int n, const double *A, int count, double *B)
 {
@@ -216,6 +222,16 @@ void sd_eigen(int n, const double *A, double *w, double *V)
       V[n * k + i] = V[n * k + m];
       V[n * k + m] = v;
     }
+  }
+}
+
+void sd_add_deviator(double c, const double a[3], const double b[3], double S[6])
+{
+  static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
+  const double trace = sd_dot(a, b) / 3.0;
+  for (int e = 0; e < 6; e++) {
+    const int p = row[e], q = column[e];
+    S[e] += c * (0.5 * (a[p] * b[q] + a[q] * b[p]) - (p == q ? trace : 0.0));
   }
 }
 

@@ -32,6 +32,9 @@ sd_status sd_cholesky_single(int n, float *A);
 /* A^-1 [n n], both triangles, from the factor of A in its place. SD_OK; SD_ESINGULAR. */
 sd_status sd_cholesky_inverse(int n, double *A);
 
+/* The same from A itself, as of sd_cholesky. Status of that. */
+sd_status sd_inverse(int n, double *A);
+
 /* B [count][n] becomes A^-1 B, from the factor of A: one right-hand side after the other. */
 void sd_cholesky_apply(int n, const double *A, int count, double *B);
 
@@ -57,6 +60,9 @@ static inline int sd_symmetric3_at(int p, int q)
 {
   return p == q ? p : p + q + 2;
 }
+
+/* In that order: S += c (a b + b a - 2/3 a.b)/2, the symmetric traceless part of a first moment */
+void sd_add_deviator(double c, const double a[3], const double b[3], double S[6]);
 
 /* y = A x; y = A^T x; C = A B. 3x3 row-major, no aliasing. */
 static inline void sd_multiply3(const double A[9], const double x[3], double y[3])

@@ -24,8 +24,7 @@ int sd_bodies_shells(const sd_bodies *A);
  * SD_OK or that of A->apply. */
 sd_status sd_bodies_product(const sd_bodies *A, int shells, const double *l, const double *V,
                             double *bodies, double *on_spheres, double *w);
-/* That of one body: N^-1 V; N^-1 */
-void sd_body_resistance(const sd_body *b, const double V[6], double f[6]);
+/* N^-1 of one body */
 void sd_body_resistance_block(const sd_body *b, double B[36]);
 
 #endif

@@ -93,7 +93,8 @@ static void turned6(const sd_body *b, const double A[36], double scale, double f
   to_space(b->R, 6, scale, y, out);
 }
 
-void sd_body_resistance(const sd_body *b, const double V[6], double f[6])
+/* f = N^-1 V */
+static void body_resist(const sd_body *b, const double V[6], double f[6])
 {
   turned6(b, b->shape->resistance, b->a, b->eta * b->a, V, f);
 }
@@ -106,7 +107,7 @@ void sd_body_resistance_block(const sd_body *b, double B[36])
   for (int q = 0; q < 6 && turned; q++) {
     double unit[6] = {0.0}, column[6];
     unit[q] = 1.0;
-    sd_body_resistance(b, unit, column);
+    body_resist(b, unit, column);
     for (int p = 0; p < 6; p++) B[6 * p + q] = column[p];
   }
 }
@@ -253,7 +254,7 @@ void sd_bodies_alone_resist(const sd_bodies *A, const double *V, double *f)
       f[of] = d < w ? A->D[(long) w * A->loner[e] + d] * V[of] : 0.0;
     }
   for (int b = 0; b < A->shaped; b++)
-    sd_body_resistance(A->body + b, V + 6 * (long) (A->lone + b), f + 6 * (long) (A->lone + b));
+    body_resist(A->body + b, V + 6 * (long) (A->lone + b), f + 6 * (long) (A->lone + b));
 }
 
 void sd_bodies_alone_move(const sd_bodies *A, const double *f, double *V)

@@ -221,8 +221,7 @@ static sd_status find_own(const sd_body_shape *s, sd_body_follow *f)
     return SD_ENOMEMORY;
   }
   memcpy(M, s->inverse, sizeof(double) * n * n);
-  sd_status status = sd_cholesky((int) n, M);
-  if (status == SD_OK) status = sd_cholesky_inverse((int) n, M);
+  const sd_status status = sd_inverse((int) n, M);
   for (int q = 0; q < 3 && status == SD_OK; q++) {
     const double e[3] = {q == 0, q == 1, q == 2};
     for (size_t i = 0; i < n; i++) column[i] = f->A[6 * i + 3 + (size_t) q];

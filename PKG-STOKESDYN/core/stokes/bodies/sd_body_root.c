@@ -14,13 +14,6 @@ void sd_body_root_free(sd_body_root *r)
   *r = (sd_body_root){0};
 }
 
-/* A^-1 in the place of A, both triangles */
-static sd_status root_invert(int n, double *A)
-{
-  const sd_status status = sd_cholesky(n, A);
-  return status == SD_OK ? sd_cholesky_inverse(n, A) : status;
-}
-
 /* M [(width m)^2] -= the waves of points k and l, a in the units of the shape */
 static void take_off_waves(const sd_body_shape *s, double a, const sd_ewald *split, int k, int l,
                            double *M)
@@ -61,7 +54,7 @@ static sd_status find_matrix(const sd_body_shape *s, double a, const sd_ewald *s
   memcpy(M, s->inverse, sizeof(double) * N * N);
   for (size_t j = 0; j < N; j++) sum[j % w > 2] += M[(N + 1) * j];
   *length = w > 3 ? sqrt(sum[1] / sum[0]) : 1.0;
-  const sd_status status = root_invert((int) N, M);
+  const sd_status status = sd_inverse((int) N, M);
   for (int k = 0; k < s->m && status == SD_OK && split; k++)
     for (int l = 0; l < s->m; l++) take_off_waves(s, a, split, k, l, M);
   for (size_t e = 0; e < N * N; e++)
@@ -87,7 +80,7 @@ sd_status sd_body_root_create(const sd_body_shape *s, double a, const sd_ewald *
   if (status == SD_OK) status = sd_symmetric_root(n, out->root);
   if (status == SD_OK) {
     memcpy(out->inverse, out->root, bytes);
-    status = root_invert(n, out->inverse);
+    status = sd_inverse(n, out->inverse);
   }
   if (status == SD_OK) {
     out->n = n;

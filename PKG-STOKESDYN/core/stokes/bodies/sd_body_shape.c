@@ -95,13 +95,6 @@ static void add_shells(sd_body_shape *s, const sd_clump *shells, const double *r
   }
 }
 
-/* A^-1 in the place of A, symmetric and positive definite */
-static sd_status shape_invert(size_t N, double *A)
-{
-  const sd_status status = sd_cholesky((int) N, A);
-  return status == SD_OK ? sd_cholesky_inverse((int) N, A) : status;
-}
-
 /* One sphere that turns, about its own centre: K = I, and M is the mobility of the body. */
 static int is_its_sphere(const sd_body_shape *s)
 {
@@ -113,7 +106,7 @@ static sd_status complete(sd_body_shape *s)
 {
   const int its_sphere = is_its_sphere(s);
   if (its_sphere) memcpy(s->mobility, s->inverse, sizeof s->mobility);
-  const sd_status status = shape_invert((size_t) s->width * (size_t) s->m, s->inverse);
+  const sd_status status = sd_inverse(s->width * s->m, s->inverse);
   if (status != SD_OK) return status;
   if (its_sphere) {
     memcpy(s->rigid, s->inverse, sizeof s->resistance);

@@ -22,7 +22,8 @@ static void read_point(const sd_bodies *A, int row, const double *y, double V[6]
   memcpy(V, y + (long) w * row, sizeof(double) * (size_t) w);
 }
 
-void sd_drifter_follow(const sd_bodies *A, const sd_drifter *d, const double *y, double *v)
+/* v [6 bodies] = A^T y, y [points]; 0 where a velocity is given */
+static void follow_points(const sd_bodies *A, const sd_drifter *d, const double *y, double *v)
 {
   for (int e = 0; e < A->lone; e++) read_point(A, A->loner[e], y, v + 6 * (long) e);
   for (int b = 0; b < A->shaped; b++) {
@@ -117,7 +118,7 @@ sd_status sd_drifter_move(const sd_bodies *A, const sd_drifter *d, const sd_drif
   double *load = work, *noise = load + motions, *on_spheres = noise + motions;
   double *borne = on_spheres + SD_TIE_OF_SPHERE * (long) A->spheres.n;
   const sd_tie_room room = {borne + 2 * motions, on_spheres};
-  sd_drifter_follow(A, d, push->u, of_points);
+  follow_points(A, d, push->u, of_points);
   memset(load, 0, sizeof(double) * (size_t) motions);
   if (push->F) sd_rigid_collect(&A->spheres, push->F, bodies, load);
   if (A->tie) {
@@ -128,7 +129,7 @@ sd_status sd_drifter_move(const sd_bodies *A, const sd_drifter *d, const sd_drif
   keep_free(A, push->velocities, of_points);
   sd_status status = bear_films(A, of_points, on_spheres, borne, load);
   if (status == SD_OK) status = add_response(A, push->tolerance, room, load, borne, of_points);
-  sd_drifter_follow(A, d, push->y, noise);
+  follow_points(A, d, push->y, noise);
   for (long j = 0; j < motions; j++) of_points[j] += noise[j];
   memcpy(of_films, of_points, sizeof(double) * (size_t) motions);
   if (!A->tie || status != SD_OK) return status;

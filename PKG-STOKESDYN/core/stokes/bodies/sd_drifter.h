@@ -32,8 +32,6 @@ typedef struct {
   const sd_body_follow *const *follow;
 } sd_drifter;
 
-/* v [6 bodies] = A^T y, y [points]; 0 where a velocity is given */
-void sd_drifter_follow(const sd_bodies *A, const sd_drifter *d, const double *y, double *v);
 /* l [points] = A v */
 void sd_drifter_spread(const sd_bodies *A, const sd_drifter *d, const double *v, double *l);
 

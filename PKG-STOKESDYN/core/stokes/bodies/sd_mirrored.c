@@ -123,8 +123,7 @@ static sd_status mi_invert(sd_mirrored *s, const double *M)
   for (int parity = 0; parity < SIGNS; parity++) {
     const int n = s->size[parity];
     mi_block(s, parity, unknown, M, A);
-    sd_status status = n > 0 ? sd_cholesky(n, A) : SD_OK;
-    if (status == SD_OK && n > 0) status = sd_cholesky_inverse(n, A);
+    const sd_status status = n > 0 ? sd_inverse(n, A) : SD_OK;
     if (status != SD_OK) return status;
     A += (size_t) n * (size_t) n;
     unknown += n;

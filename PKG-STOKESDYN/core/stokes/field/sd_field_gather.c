@@ -56,10 +56,10 @@ static void sum_along_z(const gathering *q, const sd_field_place *z, int planes)
   const long size = 4L * n[0] * n[1];
   for (int pair = 0; pair < n[0]; pair += 2) /* two share a line of the cache in the planes */
     for (int j = 0; j < n[1]; j++)
-      for (int i = pair; i < pair + 2 && i < n[0]; i++)
-        q->kernels->windows(z, planes, q->w->window.points,
-                            (const double *) s->brick + i * s->layer + j * s->row, 3,
-                            s->row, q->planes + 4L * (j * (long) n[0] + i), size);
+      for (int i = pair; i < pair + 2 && i < n[0]; i++) {
+        const sd_field_line line = {(const double *) s->brick + i * s->layer + j * s->row, 3, s->row};
+        q->kernels->windows(z, planes, q->w->window.points, &line, q->planes + 4L * (j * (long) n[0] + i), size);
+      }
 }
 
 static void sum_along_y(const gathering *q, const double *plane, const sd_field_place *y)
@@ -77,8 +77,8 @@ static void sum_along_x(gathering *q, const double *x, double *u)
       place_window(q->w, 0, coordinate(q->w, 0, at), q->of_row + i);
     }
   q->made = 1;
-  q->kernels->windows(q->of_row, points, q->w->window.points, q->line, 4, 0, q->row,
-                      4);
+  const sd_field_line line = {q->line, 4, 0};
+  q->kernels->windows(q->of_row, points, q->w->window.points, &line, q->row, 4);
   for (int i = 0; i < points; i++)
     for (int d = 0; d < 3; d++) u[3 * i + d] += q->row[4 * i + d];
 }

@@ -51,6 +51,13 @@ typedef struct {
   double value[SD_WINDOW_COLUMNS];
 } sd_field_place;
 
+/* A line of points that windows read, so many numbers of each; and from here to what the next call reads */
+typedef struct {
+  const double *from;
+  int columns;
+  long next;
+} sd_field_line;
+
 struct sd_field_kernels {
   /* every source with every point */
   void (*direct)(const sd_field_part *p);
@@ -58,10 +65,10 @@ struct sd_field_kernels {
    * 3e-6 of F/(6 pi eta a), degrees of SD_FIELD_FLOAT_DEGREES */
   void (*near)(const sd_field_part *p, sd_field_block *b);
   void (*near_floats)(const sd_field_part *p, sd_field_block *b);
-  /* out [apart l + 0 ... 3] = sum_k value_k from [columns (at + k) + 0 ... 3] at n places; with rows of
-   * three the fourth number means nothing. next: from here to what the next call reads */
-  void (*windows)(const sd_field_place *place, int n, int points, const double *from, int columns,
-                  long next, double *out, long apart);
+  /* out [apart l + 0 ... 3] = sum_k value_k line [columns (at + k) + 0 ... 3] at n places; with columns
+   * of three the fourth number means nothing */
+  void (*windows)(const sd_field_place *place, int n, int points, const sd_field_line *line, double *out,
+                  long apart);
   /* out [n] = sum_k value_k from [n k + 0 ... n - 1] */
   void (*rows)(const double *value, int points, const double *from, long n, double *out);
 };

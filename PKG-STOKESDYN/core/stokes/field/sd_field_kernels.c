@@ -164,13 +164,14 @@ static void direct(const sd_field_part *p)
 
 /* --- from the waves' grid --- */
 
-static void windows(const sd_field_place *place, int n, int points, const double *from, int columns,
-                    long next, double *out, long apart)
+static void windows(const sd_field_place *place, int n, int points, const sd_field_line *line, double *out,
+                    long apart)
 {
+  const int columns = line->columns;
   for (int l = 0; l < n; l++) {
-    const double *at = from + columns * (long) place[l].at, *value = place[l].value;
+    const double *at = line->from + columns * (long) place[l].at, *value = place[l].value;
     double *to = out + apart * l;
-    sd_fetch(at + next);
+    sd_fetch(at + line->next);
 #if LANES >= 4
     row4 sum = value[0] * load4(at);
     for (int k = 1; k < points; k++) sum += value[k] * load4(at + columns * k);

@@ -63,8 +63,8 @@ static void sources_near(const blocks *q, const double *middle, double reach)
   sd_field_block *b = q->block;
   const double x[3] = {middle[0] / q->scale, middle[1] / q->scale, middle[2] / q->scale};
   const double within = reach / q->scale;
-  const int ranges = ranges_near(q, x, within);
-  b->n = (int) q->search(q->c->centre, q->c->rows, q->range, ranges, x, 1, within * within, q->list);
+  const sd_near_ranges cells = {q->c->centre, q->c->rows, q->range, ranges_near(q, x, within)};
+  b->n = (int) q->search(&cells, x, 1, within * within, q->list);
   b->source = q->list;
 }
 

@@ -50,7 +50,6 @@ sd_status sd_lubrication_rate(sd_lubrication *L, const double *W, double *v, dou
 static void add_moment(const sd_lubrication *L, long k, const sd_lubrication_link *film,
                        const double *Vi, const double *Vj, double *S)
 {
-  static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
   const int i = L->pair[k][0], j = L->pair[k][1];
   const closeness *close = L->work->close + k;
   const double *d = film->d, half = 0.5 * close->distance, *drift = drift_at(L, close->at);
@@ -63,13 +62,8 @@ static void add_moment(const sd_lubrication *L, long k, const sd_lubrication_lin
   sd_cross(d, spin, turned);
   for (int e = 0; e < 3; e++)
     F[e] = film->XA * along * d[e] + film->YA * (U[e] - along * d[e]) + turned[e];
-  const double trace = sd_dot(d, F) / 3.0;
-  for (int e = 0; e < 6; e++) {
-    const int p = row[e], q = column[e];
-    const double moment = half * (0.5 * (d[p] * F[q] + d[q] * F[p]) - (p == q ? trace : 0.0));
-    S[6 * (long) i + e] += moment;
-    if (j < L->n && j != i) S[6 * (long) j + e] += moment;
-  }
+  sd_add_deviator(half, d, F, S + 6 * (long) i);
+  if (j < L->n && j != i) sd_add_deviator(half, d, F, S + 6 * (long) j);
 }
 
 sd_status sd_lubrication_stress(const sd_lubrication *L, const double *V, double *S)

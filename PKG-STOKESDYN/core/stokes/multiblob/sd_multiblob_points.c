@@ -103,14 +103,7 @@ void sd_multiblob_drags(const sd_multiblob_additions *points, const double *b, d
 
 void sd_multiblob_moment(long points, const double *r, const double *f, double S[6])
 {
-  static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
-  for (long k = 0; k < points; k++) {
-    const double *arm = r + 3 * k, *force = f + 3 * k, trace = sd_dot(arm, force) / 3.0;
-    for (int e = 0; e < 6; e++) {
-      const int p = row[e], q = column[e];
-      S[e] += 0.5 * (arm[p] * force[q] + arm[q] * force[p]) - (p == q ? trace : 0.0);
-    }
-  }
+  for (long k = 0; k < points; k++) sd_add_deviator(1.0, r + 3 * k, f + 3 * k, S);
 }
 
 void sd_multiblob_moments(int spheres, const int *first, const double *r, const double *f, double *S)

@@ -28,24 +28,19 @@ static size_t points_of(const sd_multiblob *m, const sd_multiblob_spheres *s)
   return (size_t) sd_multiblob_first(m, s, s->n);
 }
 
-/* Doubles of make_shape's scratch */
-static size_t scratch_of(const sd_multiblob *m, const sd_multiblob_spheres *s)
-{
-  return 7 * points_of(m, s);
-}
-
 /* A shell of so many points has its inverse in blocks: 4 MB in place of 30, and an eighth of the time. With
  * fewer both are small, and noise has use for the root of all of it. */
 enum { MIRRORED = 642 };
 
-/* r, x [3 all] and b [all] of the body's points; those that are there, and in row [all], become the
- * shape. wall NULL: there is none. mirrors: it is a lone shell in open space */
-static sd_status make_shape(const sd_multiblob *m, const sd_wall *wall, int mirrors,
-                            const sd_multiblob_spheres *s, const double centre[3], double *r,
-                            int *row, sd_body_shape *out)
+/* Of all points r, x and b of the body those that are there, and in row [all], become the shape. wall NULL: there
+ * is none. mirrors: it is a lone shell in open space */
+static sd_status make_shape(const sd_multiblob *m, const sd_wall *wall, int mirrors, const sd_multiblob_spheres *s,
+                            const double centre[3], int *row, sd_body_shape *out)
 {
   const size_t all = points_of(m, s);
-  double *x = r + 3 * all, *b = x + 3 * all;
+  double *r = malloc(sizeof(double) * 7 * all);
+  if (!r) return SD_ENOMEMORY;
+  double *x = r + 3 * all, *b = x + 3 * all, axes[9];
   int count = 0;
   sd_multiblob_expand(m, s, r, x, b);
   for (size_t k = 0; k < all; k++) {
@@ -55,16 +50,17 @@ static sd_status make_shape(const sd_multiblob *m, const sd_wall *wall, int mirr
     row[count++] = (int) k;
   }
   double *M = malloc(sizeof(double) * 9 * (size_t) count * (size_t) count);
-  if (!M) return SD_ENOMEMORY;
-  sd_wall_matrix(wall, count, 3, x, b, M);
-  add_one_body(m, s, r, row, count, M);
-  for (int k = 0; k < 3 * count; k++) x[k] -= centre[k % 3];
-  double axes[9];
-  sd_multiblob_axes(axes);
-  const sd_status status = mirrors && count >= MIRRORED
-      ? sd_body_shape_mirrored(count, x, b, axes, M, out)
-      : sd_body_shape_of(count, 3, x, b, M, out);
+  sd_status status = M ? SD_OK : SD_ENOMEMORY;
+  if (status == SD_OK) {
+    sd_wall_matrix(wall, count, 3, x, b, M);
+    add_one_body(m, s, r, row, count, M);
+    for (int k = 0; k < 3 * count; k++) x[k] -= centre[k % 3];
+    sd_multiblob_axes(axes);
+    status = mirrors && count >= MIRRORED ? sd_body_shape_mirrored(count, x, b, axes, M, out)
+                                          : sd_body_shape_of(count, 3, x, b, M, out);
+  }
   free(M);
+  free(r);
   return status;
 }
 
@@ -125,7 +121,6 @@ void sd_multiblob_shape_stand(const sd_multiblob_shape *s, const double R[9], do
  * know each other: R of them is 6 pi and, of strains, that of the lone shell. */
 static sd_status find_faces(const sd_multiblob *m, sd_multiblob_shape *s)
 {
-  static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
   const int N = 3 * m->n;
   double stresslet = 0.0;
   s->faces = calloc(SD_FACES_WIDTH * (size_t) N, sizeof(double));
@@ -139,12 +134,11 @@ static sd_status find_faces(const sd_multiblob *m, sd_multiblob_shape *s)
     sd_body_shape_answer(&s->points, unit, force);
     unit[j] = 0.0;
     for (int k = 0; k < m->n; k++) {
-      const double *r = m->r + 3 * k, *f = force + 3 * k, trace = sd_dot(r, f) / 3.0;
+      const double *f = force + 3 * k;
+      double moment[6] = {0.0};
+      sd_add_deviator(1.0, m->r + 3 * k, f, moment);
       for (int d = 0; d < 3; d++) s->faces[d * N + j] += f[d] / (6.0 * SD_PI);
-      for (int e = 0; e < 6; e++) {
-        const int p = row[e], q = column[e];
-        s->faces[(3 + e) * N + j] += 0.5 * (r[p] * f[q] + r[q] * f[p]) - (p == q ? trace : 0.0);
-      }
+      for (int e = 0; e < 6; e++) s->faces[(3 + e) * N + j] += moment[e];
     }
   }
   free(force);
@@ -183,15 +177,10 @@ static sd_status fill_shape(const sd_multiblob *m, const sd_shape *clump,
     sd_multiblob_masks(m, s->kind, clump, out->turn, out->mask);
   else
     out->mask[0] = sd_multiblob_whole(m);
-  double *scratch = malloc(sizeof(double) * scratch_of(m, s));
   out->row = malloc(sizeof(int) * points_of(m, s));
-  sd_status status = scratch && out->row
-      ? make_shape(m, NULL, !clump, s, origin, scratch, out->row, &out->points)
-      : SD_ENOMEMORY;
+  sd_status status = out->row ? make_shape(m, NULL, !clump, s, origin, out->row, &out->points) : SD_ENOMEMORY;
   out->points.turns = out->rank == 2 ? SD_BODY_ALONG : out->rank == 1 ? SD_BODY_OTHERWISE : SD_BODY_STILL;
-  if (status == SD_OK && !clump) status = find_faces(m, out);
-  free(scratch);
-  return status;
+  return status == SD_OK && !clump ? find_faces(m, out) : status;
 }
 
 sd_status sd_multiblob_shape_create(const sd_multiblob *m, const sd_shape *clump, const int *kind,
@@ -225,13 +214,9 @@ sd_status sd_multiblob_wall_shape(const sd_multiblob *m, const sd_wall *wall,
                                   sd_body_shape *out)
 {
   int *row = malloc(sizeof(int) * points_of(m, s));
-  double *scratch = malloc(sizeof(double) * scratch_of(m, s));
   *out = (sd_body_shape){0};
-  const sd_status status = row && scratch
-      ? make_shape(m, wall, 0, s, centre, scratch, row, out)
-      : SD_ENOMEMORY;
+  const sd_status status = row ? make_shape(m, wall, 0, s, centre, row, out) : SD_ENOMEMORY;
   free(row);
-  free(scratch);
   return status;
 }
 

@@ -31,14 +31,33 @@ static inline void put_cross(double c, const double h[3], double *B)
   }
 }
 
-/* What a wall adds to the block of spheres at xi and xj */
-static void un_add_image(const sd_wall *wall, const double xi[3], double ai, const double xj[3],
-                         double aj, double taper, int width, double B[36])
+/* A sphere, kept off a wall */
+typedef struct {
+  double x[3], a;
+} standing;
+
+static inline standing standing_at(const sd_law *law, const sd_spheres *s, int i)
 {
-  const double root_i[2] = {sqrt(6.0 * SD_PI * ai), sqrt(8.0 * SD_PI * ai) * ai};
-  const double root_j[2] = {sqrt(6.0 * SD_PI * aj), sqrt(8.0 * SD_PI * aj) * aj};
-  double M[36];
-  sd_wall_block(wall, width, xi, ai, xj, aj, M);
+  standing at = {.a = s->a[i]};
+  sd_wall_keep_off(&law->wall, s->x + 3 * (long) i, at.a, at.x);
+  return at;
+}
+
+/* The roots of its D */
+static void roots_of(double a, double root[2])
+{
+  root[0] = sqrt(6.0 * SD_PI * a);
+  root[1] = sqrt(8.0 * SD_PI * a) * a;
+}
+
+/* What a wall adds to the block of two spheres */
+static void un_add_image(const sd_wall *wall, const standing *i, const standing *j, double taper, int width,
+                         double B[36])
+{
+  double M[36], root_i[2], root_j[2];
+  roots_of(i->a, root_i);
+  roots_of(j->a, root_j);
+  sd_wall_block(wall, width, i->x, i->a, j->x, j->a, M);
   for (int p = 0; p < width; p++)
     for (int q = 0; q < width; q++)
       B[p + 6 * q] += taper * root_i[p / 3] * root_j[q / 3] * M[width * p + q];
@@ -52,11 +71,10 @@ static void un_add_image(const sd_wall *wall, const double xi[3], double ai, con
 static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int j, int width,
                               double B[36])
 {
-  const double ai = s->a[i], aj = s->a[j];
-  double xi[3], xj[3], r[3];
-  sd_wall_keep_off(&law->wall, s->x + 3 * (long) i, ai, xi);
-  sd_wall_keep_off(&law->wall, s->x + 3 * (long) j, aj, xj);
-  sd_minus(xi, xj, r);
+  const standing one = standing_at(law, s, i), other = standing_at(law, s, j);
+  const double ai = one.a, aj = other.a;
+  double r[3];
+  sd_minus(one.x, other.x, r);
   const double R = sqrt(sd_dot(r, r)), inv = R > 0.0 ? 1.0 / R : 0.0;
   const double h[3] = {r[0] * inv, r[1] * inv, r[2] * inv};
   double f, g;
@@ -71,19 +89,18 @@ static inline void unit_block(const sd_law *law, const sd_spheres *s, int i, int
     put_cross(half_root_3 * c * aj * sd_rpy_radial_wf(R, aj, ai), h, B + 6 * 3);
     put_cross(half_root_3 * c * ai * sd_rpy_radial_wf(R, ai, aj), h, B + 3);
   }
-  if (law->wall.sign) un_add_image(&law->wall, xi, ai, xj, aj, taper, width, B);
+  if (law->wall.sign) un_add_image(&law->wall, &one, &other, taper, width, B);
 }
 
 /* That of a sphere with itself, and a little on the diagonal */
 static inline void un_own_block(const sd_law *law, const sd_spheres *s, int i, int width, double extra,
                                 double B[36])
 {
-  double x[3];
   memset(B, 0, 36 * sizeof(double));
   for (int p = 0; p < width; p++) B[7 * p] = 1.0 + extra;
   if (!law->wall.sign) return;
-  sd_wall_keep_off(&law->wall, s->x + 3 * (long) i, s->a[i], x);
-  un_add_image(&law->wall, x, s->a[i], x, s->a[i], 1.0, width, B);
+  const standing own = standing_at(law, s, i);
+  un_add_image(&law->wall, &own, &own, 1.0, width, B);
 }
 
 /* Its lower triangle, with 1 + extra on the diagonal; into one of A, A_single. width: that of c, by which

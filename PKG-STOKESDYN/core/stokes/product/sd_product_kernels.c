@@ -66,9 +66,9 @@ INLINE void add_forces(const law *w, int self, const side *i, const side *j)
 INLINE void add_torques(const law *w, int self, const side *i, const side *j)
 {
   const place *p = &i->at, *q = &j->at;
-  const vec dx = length_between(p->x, q->x, w->step), dy = length_between(p->y, q->y, w->step);
-  const vec dz = length_between(p->z, q->z, w->step);
-  const vec r2 = dx * dx + dy * dy + dz * dz;
+  const vec d[3] = {length_between(p->x, q->x, w->step), length_between(p->y, q->y, w->step),
+                    length_between(p->z, q->z, w->step)};
+  const vec r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
   grand b;
   torques_block(w, r2, p->a, q->a, p->a * p->a + q->a * q->a, &b);
   if (self >= 0 && self < LANES) {
@@ -77,8 +77,8 @@ INLINE void add_torques(const law *w, int self, const side *i, const side *j)
     b.f = f;
     b.k = k;
   }
-  grand_add(&b, b.cji, b.cij, dx, dy, dz, j->F, i->u);
-  if (j->u) grand_add(&b, -b.cij, -b.cji, dx, dy, dz, i->F, j->u);
+  grand_add(&b, b.cji, b.cij, d, j->F, i->u);
+  if (j->u) grand_add(&b, -b.cij, -b.cji, d, i->F, j->u);
 }
 
 DEFINE_SYMMETRIC(symmetric, 3, MOST_TARGETS, add_forces)

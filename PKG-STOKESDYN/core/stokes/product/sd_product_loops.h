@@ -63,15 +63,16 @@ typedef struct {
   int begin;
 } chunk_sums;
 
-/* Sources of a chunk, in whole vectors */
+/* Targets from `target` on, and sources, in whole vectors */
 typedef struct {
-  int begin, end;
-} sources;
+  int target, begin, end;
+} meeting;
 
-/* Targets from i on against sources; sums NULL: these get nothing */
-INLINE void tile(int width, int targets, pair_sum *add, const law *w, const sd_packed *p, int i, sources s,
+/* sums NULL: the sources get nothing */
+INLINE void tile(int width, int targets, pair_sum *add, const law *w, const sd_packed *p, meeting m,
                  const chunk_sums *sums)
 {
+  const int i = m.target;
   const real *restrict px = p->x, *restrict py = p->y, *restrict pz = p->z, *restrict pa = p->a;
   place target[MOST_TARGETS];
   vec F[MOST_TARGETS][6], u[MOST_TARGETS][6], G[6], v[6];
@@ -84,7 +85,7 @@ INLINE void tile(int width, int targets, pair_sum *add, const law *w, const sd_p
       u[t][k] = all(0.0);
     }
   }
-  for (int j = s.begin; j < s.end; j += LANES) {
+  for (int j = m.begin; j < m.end; j += LANES) {
     const side source = {{load(px + j), load(py + j), load(pz + j), load(pa + j)}, G, sums ? v : NULL};
 #pragma GCC unroll 6
     for (int k = 0; k < width; k++) {
@@ -172,8 +173,8 @@ INLINE void share_of_pairs(int width, int targets, pair_sum *add, const law *w, 
       if (!mine(i / LANES, part, parts)) continue;
       const int from = i + LANES > c ? i + LANES : c;
       for (int t = i; t < i + LANES; t += targets) {
-        if (i >= c) tile(width, targets, add, w, p, t, (sources){i, i + LANES}, NULL);
-        if (from < end) tile(width, targets, add, w, p, t, (sources){from, end}, &sums);
+        if (i >= c) tile(width, targets, add, w, p, (meeting){t, i, i + LANES}, NULL);
+        if (from < end) tile(width, targets, add, w, p, (meeting){t, from, end}, &sums);
       }
       give_sums(p, width, &sums, end);
     }

@@ -107,11 +107,6 @@ static void copy_corner(const sd_columns *c, const double *from, double *to)
   for (long m = 0; m < (long) c->corner_sums * SD_CORNERS; m++) to[m * W] = from[m * W];
 }
 
-static int columns_wave_number(int m, int n)
-{
-  return m < (n + 1) / 2 ? m : m - n;
-}
-
 static long group_of(const sd_columns *c, int y, int z)
 {
   return (long) (y - c->y0) * c->groups + (z - c->z0) / W;
@@ -133,7 +128,7 @@ static void fill_wave(sd_columns *c, sd_slab_corner *corner, int y, int z, int e
   const sd_ewald *e = &c->slab.ewald;
   int d[2];
   along_slab(c, d);
-  const int wave[2] = {columns_wave_number(y, e->grid[d[0]]), z};
+  const int wave[2] = {sd_grid_wave(y, e->grid[d[0]]), z};
   const double k[2] = {2.0 * SD_PI * wave[0] / e->box.edge[d[0]],
                        2.0 * SD_PI * wave[1] / e->box.edge[d[1]]};
   const double unit = unit_of(c, wave, k);

@@ -76,11 +76,18 @@ INLINE void step(double *restrict t, const double *restrict by)
   for (int m = 0; m < W; m++) t[m] = t[m] > 1e-250 ? t[m] * by[m] : 0.0;
 }
 
-/* slope [W] = k z + c */
-INLINE void slopes(const sd_column_group *g, double z, double *restrict slope)
+/* slope [W] = k z + c, z: of plane p from below, or from above */
+INLINE void slopes(const sd_column_group *g, int above, int p, double *restrict slope)
 {
   const double *k = number(g, SD_COLUMN_K), *c = number(g, SD_COLUMN_SHIFT);
+  const double z = above ? g->top - g->first - p * g->spacing : g->first + p * g->spacing;
   for (int m = 0; m < W; m++) slope[m] = k[m] * z + c[m];
+}
+
+/* t [W] of the first plane from below, or from above */
+INLINE void first_of(const sd_column_group *g, int above, double *t)
+{
+  memcpy(t, number(g, above ? SD_COLUMN_T3 : SD_COLUMN_T1), sizeof(lane));
 }
 
 INLINE void add_moments(const plane *restrict f, const double *restrict t,
@@ -100,15 +107,13 @@ static void moments(const sd_column_group *g, const plane *in, terms *m)
 {
   lane t, slope;
   memset(m, 0, sizeof(*m));
-  memcpy(t.v, number(g, SD_COLUMN_T1), sizeof(t));
-  for (int p = 0; p < g->planes; p++, step(t.v, number(g, SD_COLUMN_STEP))) {
-    slopes(g, g->first + p * g->spacing, slope.v);
-    add_moments(in + p, t.v, slope.v, m->t, m->t + 1);
-  }
-  memcpy(t.v, number(g, SD_COLUMN_T3), sizeof(t));
-  for (int p = g->planes - 1; p >= 0; p--, step(t.v, number(g, SD_COLUMN_STEP))) {
-    slopes(g, g->top - g->first - p * g->spacing, slope.v);
-    add_moments(in + p, t.v, slope.v, m->t + 2, m->t + 3);
+  for (int above = 0; above < 2; above++) {
+    first_of(g, above, t.v);
+    for (int q = 0; q < g->planes; q++, step(t.v, number(g, SD_COLUMN_STEP))) {
+      const int p = above ? g->planes - 1 - q : q;
+      slopes(g, above, p, slope.v);
+      add_moments(in + p, t.v, slope.v, m->t + 2 * above, m->t + 2 * above + 1);
+    }
   }
 }
 
@@ -125,15 +130,13 @@ INLINE void add_expansion(plane *restrict u, const double *restrict t, const dou
 static void expand(const sd_column_group *g, const terms *a, plane *out)
 {
   lane t, slope;
-  memcpy(t.v, number(g, SD_COLUMN_T1), sizeof(t));
-  for (int p = 0; p < g->planes; p++, step(t.v, number(g, SD_COLUMN_STEP))) {
-    slopes(g, g->first + p * g->spacing, slope.v);
-    add_expansion(out + p, t.v, slope.v, a->t, a->t + 1);
-  }
-  memcpy(t.v, number(g, SD_COLUMN_T3), sizeof(t));
-  for (int p = g->planes - 1; p >= 0; p--, step(t.v, number(g, SD_COLUMN_STEP))) {
-    slopes(g, g->top - g->first - p * g->spacing, slope.v);
-    add_expansion(out + p, t.v, slope.v, a->t + 2, a->t + 3);
+  for (int above = 0; above < 2; above++) {
+    first_of(g, above, t.v);
+    for (int q = 0; q < g->planes; q++, step(t.v, number(g, SD_COLUMN_STEP))) {
+      const int p = above ? g->planes - 1 - q : q;
+      slopes(g, above, p, slope.v);
+      add_expansion(out + p, t.v, slope.v, a->t + 2 * above, a->t + 2 * above + 1);
+    }
   }
 }
 

@@ -3,30 +3,29 @@
 #include <math.h>
 #include <string.h>
 
-sd_slab_walls sd_slab_layer(int axis)
+/* All bytes are set, which who compares tables reads. */
+static sd_slab_walls walls_of(sd_slab_kind kind, const sd_wall *first)
 {
   sd_slab_walls walls;
   memset(&walls, 0, sizeof(walls));
-  walls.kind = SD_SLAB_LAYER;
-  walls.wall[0] = (sd_wall){axis, 1, 0.0};
+  walls.kind = kind;
+  walls.wall[0] = *first;
   return walls;
+}
+
+sd_slab_walls sd_slab_layer(int axis)
+{
+  return walls_of(SD_SLAB_LAYER, &(sd_wall){axis, 1, 0.0});
 }
 
 sd_slab_walls sd_slab_floor(const sd_wall *wall)
 {
-  sd_slab_walls walls;
-  memset(&walls, 0, sizeof(walls));
-  walls.kind = SD_SLAB_FLOOR;
-  walls.wall[0] = *wall;
-  return walls;
+  return walls_of(SD_SLAB_FLOOR, wall);
 }
 
 sd_slab_walls sd_slab_slit(int axis, double lo, double hi, int no_flux)
 {
-  sd_slab_walls walls;
-  memset(&walls, 0, sizeof(walls));
-  walls.kind = SD_SLAB_SLIT;
-  walls.wall[0] = (sd_wall){axis, 1, lo};
+  sd_slab_walls walls = walls_of(SD_SLAB_SLIT, &(sd_wall){axis, 1, lo});
   walls.wall[1] = (sd_wall){axis, -1, hi};
   walls.height = hi - lo;
   walls.no_flux = no_flux;

@@ -128,9 +128,10 @@ INLINE void grand_block(vec r2, vec ai, vec aj, vec squares, grand *b)
   }
 }
 
-/* u [6] += block F [6]; cu, cw: c of the cross products in U and in W */
-INLINE void grand_add(const grand *b, vec cu, vec cw, vec dx, vec dy, vec dz, const vec *F, vec *u)
+/* u [6] += block F [6] across d; cu, cw: c of the cross products in U and in W */
+INLINE void grand_add(const grand *b, vec cu, vec cw, const vec d[3], const vec *F, vec *u)
 {
+  const vec dx = d[0], dy = d[1], dz = d[2];
   const vec c = b->h * (dx * F[0] + dy * F[1] + dz * F[2]);
   const vec e = b->e * (dx * F[3] + dy * F[4] + dz * F[5]);
   u[0] = (u[0] + b->f * F[0]) + c * dx + cu * (F[4] * dz - F[5] * dy);

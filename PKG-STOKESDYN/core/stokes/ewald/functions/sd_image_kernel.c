@@ -1,6 +1,7 @@
 #include "sd_image_kernel.h"
 
 #include "sd_constants.h"
+#include "sd_grid.h"
 #include "sd_padded.h"
 #include "sd_radial.h"
 #include "sd_window.h"
@@ -57,7 +58,7 @@ sd_status sd_image_kernel(const sd_ewald *e, const int *size, const int *y, cons
 void sd_image_slopes(const sd_ewald *e, int size, double *gamma)
 {
   for (int m = 0; m < size; m++) {
-    const int wave = m < (size + 1) / 2 ? m : m - size;
+    const int wave = sd_grid_wave(m, size);
     const double theta = 2.0 * SD_PI * wave / size;
     gamma[m] = e->spacing * sd_window_slope(e->points, e->beta, theta) +
         e->a_ref * e->a_ref / 3.0 * theta / e->spacing;

@@ -139,6 +139,12 @@ static inline long sd_grid_number(int points, int line, int z)
   return 2 * ((long) (line / 2) * points + z) + line % 2;
 }
 
+/* The wave number that a transform of n points has in place m: 0, 1 ... n/2 - 1, then from -n/2 on */
+static inline int sd_grid_wave(int m, int n)
+{
+  return m < (n + 1) / 2 ? m : m - n;
+}
+
 /* Values at the points of plane x and of its lines y ... y_end - 1: fields [3], which hold zeros and whose
  * line 0 is line y. */
 typedef void sd_grid_fill(void *ctx, int x, int y, int y_end, double *const *fields);

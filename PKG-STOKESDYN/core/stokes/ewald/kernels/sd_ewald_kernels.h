@@ -172,11 +172,19 @@ typedef struct {
   double gamma, sy;
 } sd_image_rows;
 
-/* Which rows of ranges, begin and end of each [count][2], are within a distance of one of so many places [3]?
- * Their numbers to list, which has room for 8 more than there are; returns how many. centre [3]:
- * coordinates, stride apart. */
-typedef long sd_near_search(const double *centre, long stride, const int *ranges, int count,
-                            const double *x, int places, double distance2, int *list);
+/* Rows in so many ranges, begin and end of each [count][2]; centre: x of all rows there are, then y and z,
+ * each so many numbers behind the last */
+typedef struct {
+  const double *centre;
+  long stride;
+  const int *range;
+  int count;
+} sd_near_ranges;
+
+/* Which of these rows are within a distance of one of so many places [3]? Their numbers to list, which has
+ * room for 8 more than there are; returns how many. */
+typedef long sd_near_search(const sd_near_ranges *rows, const double *x, int places, double distance2,
+                            int *list);
 
 struct sd_ewald_kernels {
   /* of a number */

@@ -9,10 +9,11 @@ INLINE vec distance_squared(const vec *a, const vec *b)
 }
 
 /* The lanes beyond the end, of other rows, are cut off; centres have room for them. */
-INLINE long search_range(const double *px, long stride, int begin, int end, const vec (*x)[3], int places,
-                         vec most, int *list)
+INLINE long search_range(const sd_near_ranges *rows, int k, const vec (*x)[3], int places, vec most,
+                         int *list)
 {
-  const double *py = px + stride, *pz = py + stride;
+  const double *px = rows->centre, *py = px + rows->stride, *pz = py + rows->stride;
+  const int begin = rows->range[2 * k], end = rows->range[2 * k + 1];
   long many = 0;
   for (int j = begin; j < end; j += LANES) {
     const vec at[3] = {load_any(px + j), load_any(py + j), load_any(pz + j)};
@@ -25,26 +26,26 @@ INLINE long search_range(const double *px, long stride, int begin, int end, cons
   return many;
 }
 
-INLINE long search_places(const double *centre, long stride, const int *ranges, int count, const double *x,
-                          int places, double distance2, int *list)
+INLINE long search_places(const sd_near_ranges *rows, const double *x, int places, double distance2,
+                          int *list)
 {
   vec at[SD_BUNCH][3];
   long many = 0;
   for (int q = 0; q < places; q++)
     for (int d = 0; d < 3; d++) at[q][d] = all(x[3 * q + d]);
-  for (int k = 0; k < count; k++)
-    many += search_range(centre, stride, ranges[2 * k], ranges[2 * k + 1], at, places, all(distance2),
-                         list + many);
+  for (int k = 0; k < rows->count; k++)
+    many += search_range(rows, k, at, places, all(distance2), list + many);
   return many;
 }
 
-/* One place, and a full bunch, in loops of their own */
-static long search(const double *centre, long stride, const int *ranges, int count, const double *x,
-                   int places, double distance2, int *list)
+/* One place, and a full bunch, in loops of their own. No number of the list can be a part of this copy of the
+ * rows: it stays in registers. */
+static long search(const sd_near_ranges *rows, const double *x, int places, double distance2, int *list)
 {
-  return places == 1       ? search_places(centre, stride, ranges, count, x, 1, distance2, list)
-      : places == SD_BUNCH ? search_places(centre, stride, ranges, count, x, SD_BUNCH, distance2, list)
-                           : search_places(centre, stride, ranges, count, x, places, distance2, list);
+  const sd_near_ranges own = *rows;
+  return places == 1       ? search_places(&own, x, 1, distance2, list)
+      : places == SD_BUNCH ? search_places(&own, x, SD_BUNCH, distance2, list)
+                           : search_places(&own, x, places, distance2, list);
 }
 
 #endif
@@ -258,7 +259,7 @@ COPIED void near_torques(int equal, int degree, const sd_near_part *p)
   const alike of_all = alike_of((real) sqrt(p->ref2));
   for (int i = 0; i < p->bunches; i++) {
     const real *own = rows + 8 * (long) i, *turn = turns + 4 * (long) i;
-    const vec x = all(own[0]), y = all(own[1]), z = all(own[2]), a = all(own[3]);
+    const vec x[3] = {all(own[0]), all(own[1]), all(own[2])}, a = all(own[3]);
     const vec bi = (a * a - ref2) * sixth;
     vec u[6], G[6];
 #pragma GCC unroll 6
@@ -269,13 +270,13 @@ COPIED void near_torques(int equal, int degree, const sd_near_part *p)
     const long end = p->first[i + 1];
     for (long k = p->first[i]; k < end; k += LANES) {
       const int *j = p->neighbor + k;
-      vec at[11], *F = at + 4, D[SD_RADIALS], v[6];
+      vec at[11], *F = at + 4, D[SD_RADIALS], v[6], d[3];
       grand b;
       gather_eight(rows, j, at);
       gather(turns, 4, j, F + 3);
-      const vec dx = length_between(x, at[0], unit), dy = length_between(y, at[1], unit);
-      const vec dz = length_between(z, at[2], unit), aj = at[3];
-      const vec r2 = dx * dx + dy * dy + dz * dz, t = smaller(r2, range2) * twice - one;
+      for (int c = 0; c < 3; c++) d[c] = length_between(x[c], at[c], unit);
+      const vec aj = at[3];
+      const vec r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], t = smaller(r2, range2) * twice - one;
       if (equal && BRANCHLESS)
         grand_alike(r2, &of_all, &b);
       else
@@ -296,10 +297,10 @@ COPIED void near_torques(int equal, int degree, const sd_near_part *p)
       }
       b.k -= quarter * D[SD_I1];
       b.e -= quarter * D[SD_J1];
-      grand_add(&b, b.cji, b.cij, dx, dy, dz, F, u);
+      grand_add(&b, b.cji, b.cij, d, F, u);
 #pragma GCC unroll 6
-      for (int d = 0; d < 6; d++) v[d] = all(0.0);
-      grand_add(&b, b.cij, b.cji, -dx, -dy, -dz, G, v);
+      for (int e = 0; e < 6; e++) v[e] = all(0.0);
+      grand_add(&b, -b.cij, -b.cji, d, G, v);
       vec U[4] = {v[0], v[1], v[2], all(0.0)}, W[4] = {v[3], v[4], v[5], all(0.0)};
       add_to_rows(sums, 8, j, U);
       add_to_rows(sums + 4, 8, j, W);

@@ -76,9 +76,10 @@ INLINE void image_whole(const image_pairs *m, vec *c)
   c[4] = h * (u3 + u3 - v) - Q2;
 }
 
-/* u += image of a force F; c4, c5: of this direction of the pair */
-INLINE void image_add(const vec *c, vec c4, vec c5, vec x, vec y, vec z, const vec *F, vec *u)
+/* u += image of a force F, seen from it by r; c4, c5: of this direction of the pair */
+INLINE void image_add(const vec *c, vec c4, vec c5, const vec r[3], const vec *F, vec *u)
 {
+  const vec x = r[0], y = r[1], z = r[2];
   const vec p = x * F[0] + y * F[1] - z * F[2], along = c[2] * p - c4 * F[2];
   u[0] += c[0] * F[0] + along * x;
   u[1] += c[0] * F[1] + along * y;
@@ -103,15 +104,16 @@ COPIED void near_images(int equal, int degree, const sd_image_part *p)
       vec at[4], F[4], c[5], smooth[5], v[4] = {none, none, none, none};
       gather(p->row, 8, j, at);
       gather(p->row + 4, 8, j, F);
-      const vec dx = x - at[0], dy = y - at[1], h = at[2], z = g + h, B = at[3] * at[3] * sixth;
-      const vec r2 = dx * dx + dy * dy + z * z, t = smaller(r2, range2) * twice - one;
+      const vec h = at[2], B = at[3] * at[3] * sixth, r[3] = {x - at[0], y - at[1], g + h};
+      const vec back[3] = {-r[0], -r[1], r[2]};
+      const vec r2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2], t = smaller(r2, range2) * twice - one;
       const image_pairs m = {r2, g, h, A, B};
       image_whole(&m, c);
       image_smooth(equal, degree, mine, t, B - ref, &m, smooth);
 #pragma GCC unroll 5
       for (int f = 0; f < 5; f++) c[f] -= smooth[f];
-      image_add(c, c[3], c[4], dx, dy, z, F, u);
-      image_add(c, c[4], c[3], -dx, -dy, z, G, v);
+      image_add(c, c[3], c[4], r, F, u);
+      image_add(c, c[4], c[3], back, G, v);
       const yes_no self = F[3] == me;
 #pragma GCC unroll 3
       for (int d = 0; d < 3; d++) v[d] = where(self, none, v[d]);

@@ -22,12 +22,13 @@ double sd_ewald_levels_cost(const sd_ewald *first, const sd_ewald_level *second)
  * their rms says nothing of those, whose velocities shall be as good. */
 static const double LARGE_TOO = 0.12;
 
-/* All have one a_ref, that of the small ones: it is in the waves that one level takes from the
- * other. */
-static sd_status lv_split(const sd_ewald_box *box, const sd_ewald_class *small,
-                          const sd_ewald_class *large, int width, double times, double tolerance,
-                          sd_ewald *first, sd_ewald_level *second)
+enum { SMALL, LARGE };
+
+/* All have one a_ref, that of the small ones: it is in the waves that one level takes from the other. */
+static sd_status lv_split(const sd_ewald_box *box, const sd_ewald_class spheres[2], int width, double times,
+                          double tolerance, sd_ewald *first, sd_ewald_level *second)
 {
+  const sd_ewald_class *small = spheres + SMALL, *large = spheres + LARGE;
   sd_ewald *coarse = &second->split;
   sd_status status = sd_ewald_gaussian(box, small, width, tolerance, first);
   if (status == SD_OK)
@@ -49,18 +50,18 @@ sd_status sd_ewald_levels_best(const sd_ewald_box *box, const sd_ewald_sizes *si
   static const double times[] = {1.5, 2.0};
   const sd_ewald_box own = *box;
   double least = INFINITY;
-  sd_ewald_class large = {0};
+  sd_ewald_class spheres[2] = {{0}};
   for (int k = 0; k + 1 < SD_EWALD_OCTAVES; k++) {
-    sd_ewald_add_class(&large, sizes->octave + k);
+    sd_ewald_add_class(spheres + LARGE, sizes->octave + k);
     if (!(sizes->octave[k].count > 0.0)) continue;
-    sd_ewald_class small = {0};
-    for (int l = k + 1; l < SD_EWALD_OCTAVES; l++) sd_ewald_add_class(&small, sizes->octave + l);
-    for (int m = 0; m < 2 && small.count > 0.0; m++) {
+    spheres[SMALL] = (sd_ewald_class){0};
+    for (int l = k + 1; l < SD_EWALD_OCTAVES; l++) sd_ewald_add_class(spheres + SMALL, sizes->octave + l);
+    for (int m = 0; m < 2 && spheres[SMALL].count > 0.0; m++) {
       sd_ewald e;
       sd_ewald_level level;
       memset(&level, 0, sizeof(level));
-      if (lv_split(&own, &small, &large, width, times[m], tolerance, &e, &level) != SD_OK) continue;
-      level.from = ldexp(large.largest, -k - 1);
+      if (lv_split(&own, spheres, width, times[m], tolerance, &e, &level) != SD_OK) continue;
+      level.from = ldexp(spheres[LARGE].largest, -k - 1);
       const double cost = sd_ewald_levels_cost(&e, &level);
       if (!(cost < least)) continue;
       least = cost;

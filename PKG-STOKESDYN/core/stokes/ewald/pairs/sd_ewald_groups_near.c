@@ -53,7 +53,8 @@ static sd_status visit_group(void *ctx, int row, int end, int ranges, long most)
     return SD_ENOMEMORY;
   int *found = g->candidate + f->many;
   sd_ewald_cells_at(c, row, x);
-  const long all = f->pairs->doubles->search(c->centre, c->rows, c->range, ranges, x, 1, c->reach * c->reach, found);
+  const sd_near_ranges later = {c->centre, c->rows, c->range, ranges};
+  const long all = f->pairs->doubles->search(&later, x, 1, c->reach * c->reach, found);
   g->from[row] = f->many;
   for (long k = 0; k < all; k++)
     if (!ghost || !eg_is_ghost(f, found[k])) g->candidate[f->many++] = found[k];

@@ -151,7 +151,8 @@ static long ip_neighbors_of(sd_ewald_image_pairs *p, int i, sd_near_strip **near
   }
   if (!sd_extend(&p->neighbor, sizeof(int), (size_t) most, &p->neighbor_room)) return -1;
   const double image[3] = {centre[i], centre[rows + i], -centre[2 * rows + i]};
-  many += p->kernels->search(centre, rows, ranges, strips, image, 1, range * range, p->neighbor + many);
+  const sd_near_ranges seen = {centre, rows, ranges, strips};
+  many += p->kernels->search(&seen, image, 1, range * range, p->neighbor + many);
   while (many % FULL) p->neighbor[many++] = p->part.rows;
   return many;
 }

@@ -10,8 +10,9 @@ long sd_ewald_pairs_near(sd_ewald_pairs *p, int row, int end, int ranges, const 
   double x[3 * SD_BUNCH];
   for (int k = row; k < end; k++)
     for (long d = 0; d < 3; d++) x[3 * (k - row) + d] = centre[d * p->rows + k];
+  const sd_near_ranges rows = {centre, p->rows, range, ranges};
   int *list = p->neighbor + many;
-  long found = p->doubles->search(centre, p->rows, range, ranges, x, end - row, range2, list);
+  long found = p->doubles->search(&rows, x, end - row, range2, list);
   while (found % p->full) list[found++] = p->rows;
   return many + found;
 }

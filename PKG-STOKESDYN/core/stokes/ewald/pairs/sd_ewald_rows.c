@@ -147,11 +147,10 @@ static double near_unit_of(const sd_ewald_pairs *p)
 }
 
 static inline void take_of_width(int m, const sd_ewald_pairs *p, long begin, long end, const real *waves,
-                                 const double *tail, const double *sums, double *u)
+                                 const far_part *far, double *u)
 {
   const real *row = p->row, *turn = p->torque_row;
   const double length = 1.0 / p->scale, alike = self_of(p, 0.0), turned = 0.25 * p->origin[SD_I1];
-  const far_part far = far_of(p, tail, sums);
   const double over_unit = 1.0 / p->unit; /* of a power of two: exact */
   const double near_unit = near_unit_of(p);
   for (long i = begin; i < end; i++) {
@@ -162,7 +161,7 @@ static inline void take_of_width(int m, const sd_ewald_pairs *p, long begin, lon
     const double self = p->equal ? alike : self_of(p, b);
     for (int d = 0; d < m; d++) {
       const double sum = unit * near_number(m, p, k, d);
-      const double beyond = d < 3 ? far.of_all[d] - b * far.of_b[d] : far.turned[d - 3];
+      const double beyond = d < 3 ? far->of_all[d] - b * far->of_b[d] : far->turned[d - 3];
       const double own = d < 3 ? self * row[8 * k + 4 + d] : turned * length * turn[4 * k + d - 3];
       double v = sum - wave * own;
       if (waves) v += wave * waves[m * i + d];
@@ -174,8 +173,9 @@ static inline void take_of_width(int m, const sd_ewald_pairs *p, long begin, lon
 static void rows_take(const sd_ewald_pairs *p, long begin, long end, const void *waves, const double *tail,
                       const double *sums, double *u)
 {
-  if (p->width == 6) take_of_width(6, p, begin, end, waves, tail, sums, u);
-  else take_of_width(3, p, begin, end, waves, tail, sums, u);
+  const far_part far = far_of(p, tail, sums);
+  if (p->width == 6) take_of_width(6, p, begin, end, waves, &far, u);
+  else take_of_width(3, p, begin, end, waves, &far, u);
 }
 
 static inline void of_ghosts_of_width(int m, const sd_ewald_pairs *p, int n, double *u)

@@ -98,7 +98,7 @@ static int waves_at(const sd_ewald *e, const int *size, int y)
   const int half = size[2] / 2 + 1;
   if (!e->box.periodic || e->slab.planes > 0) return half;
   double waves = (size[2] + 1) / 2;
-  if (e->band > 0.0) waves = fmin(waves, waves_in_band(e, y < (size[1] + 1) / 2 ? y : y - size[1]));
+  if (e->band > 0.0) waves = fmin(waves, waves_in_band(e, sd_grid_wave(y, size[1])));
   const int whole = ((int) waves + VECTOR - 1) / VECTOR * VECTOR;
   return whole < half ? whole : half;
 }

@@ -6,17 +6,12 @@
 
 #include "sd_constants.h"
 #include "sd_ewald_kernels.h"
+#include "sd_grid.h"
 #include "sd_image_kernel.h"
 #include "sd_padded.h"
 #include "sd_radial.h"
 #include "sd_real.h"
 #include "sd_window.h"
-
-/* Wave number of point m of n: 0, 1 ... n/2 - 1, then from -n/2 on */
-static int wave_wave_number(int m, int n)
-{
-  return m < (n + 1) / 2 ? m : m - n;
-}
 
 /* A table that was made of doubles, of kernels that take floats */
 static sd_status narrow(sd_wave *w, size_t numbers)
@@ -59,7 +54,7 @@ static sd_status periodic_table(sd_wave *w, const sd_ewald *e, int y1)
   for (int y = w->y0; y < y1 && ok; y++)
     for (int x = 0; x < w->size[0]; x++, next += row) {
       double start[3];
-      const int mx = wave_wave_number(x, w->size[0]), my = wave_wave_number(y, w->size[1]);
+      const int mx = sd_grid_wave(x, w->size[0]), my = sd_grid_wave(y, w->size[1]);
       for (int c = 0; c < 3; c++) start[c] = mx * w->k[0][c] + my * w->k[1][c];
       periodic_entries(w, e, start, inverse[0][abs(mx)] * inverse[1][abs(my)], inverse[2], next);
     }
@@ -123,7 +118,7 @@ static sd_status open_table(sd_wave *w, const sd_ewald *e, int y1)
   int end = 0;
   w->first_row = w->size[1];
   for (int y = w->y0; y < y1; y++) {
-    const int row = abs(wave_wave_number(y, w->size[1]));
+    const int row = abs(sd_grid_wave(y, w->size[1]));
     if (row < w->first_row) w->first_row = row;
     if (row + 1 > end) end = row + 1;
   }
@@ -178,7 +173,7 @@ static void rows_at(const sd_wave *w, void *const *plane, int x, int depth, void
 /* That row of the three fields, times B and the projection */
 static void wa_periodic_row(const sd_wave *w, int x, int y, int depth, const void *B, void *const *row)
 {
-  const int mx = wave_wave_number(x, w->size[0]), my = wave_wave_number(y, w->size[1]);
+  const int mx = sd_grid_wave(x, w->size[0]), my = sd_grid_wave(y, w->size[1]);
   double k[3];
   for (int c = 0; c < 3; c++) k[c] = mx * w->k[0][c] + my * w->k[1][c];
   k[2] += w->z0 * w->k[2][2];
@@ -201,7 +196,7 @@ void sd_wave_multiply_root(void *ctx, int y, int depth, void *const *plane)
 /* Rows x and -x of a plane of an open box above a wall, and what they are multiplied with */
 static sd_image_rows rows_above(const sd_wave *w, int x, int y, void *const *plane)
 {
-  const int half_x = w->size[0] / 2 + 1, my = wave_wave_number(y, w->size[1]), depth = w->depth;
+  const int half_x = w->size[0] / 2 + 1, my = sd_grid_wave(y, w->size[1]), depth = w->depth;
   const long entry = (long) (abs(my) - w->first_row) * half_x + x;
   sd_image_rows r = {.depth = depth,
                      .K = (const double *) w->table + entry * 6 * depth,
@@ -223,9 +218,9 @@ void sd_wave_multiply(void *ctx, int y, int depth, void *const *plane)
   }
   if (w->images) return;
   const int half_x = w->size[0] / 2 + 1;
-  const int my = wave_wave_number(y, w->size[1]);
+  const int my = sd_grid_wave(y, w->size[1]);
   for (int x = 0; x < w->size[0]; x++) {
-    const int mx = wave_wave_number(x, w->size[0]);
+    const int mx = sd_grid_wave(x, w->size[0]);
     void *row[3];
     rows_at(w, plane, x, depth, row);
     if (w->periodic)
