@@ -24,7 +24,7 @@ static double screen_of_band(const sd_ewald *e, double k2)
 {
   const double left = e->band * e->band - k2;
   if (!(left > 0.0)) return 0.0;
-  const double x = e->range * k2 / (e->band + sqrt(left));
+  const double x = k2 * e->band / (2.0 * e->xi * e->xi) / (e->band + sqrt(left));
   return (1.0 + x - bend_of_band(e) * k2) * exp(-x);
 }
 

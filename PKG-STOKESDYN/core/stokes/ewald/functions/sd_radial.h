@@ -13,12 +13,12 @@
  *
  * Waves that end at a band K have the integrals themselves, with
  *
- *   H = (1 + x - a_ref^2 k^2/3) exp(-x),   x = R (K - sqrt(K^2 - k^2)),   0 from K on
+ *   H = (1 + x - a_ref^2 k^2/3) exp(-x),   x = R' (K - sqrt(K^2 - k^2)),   0 from K on,   R' = K/(2 xi^2)
  *
- * R: the range. A Gaussian has x = k^2/(4 xi^2), which this is for long waves; but of all functions that
- * end at K it leaves nearly the least beyond R, and K R is a little more than half of what it is where
- * a Gaussian is cut. The flow at points has b = 0 there, and a_ref is of the spheres alone, which is why
- * it has k^2/6.
+ * A Gaussian has x = k^2/(4 xi^2), which this is for long waves; but where R' is the range or a little less,
+ * of all functions that end at K it leaves nearly the least beyond it, and K R is a little more than half
+ * of what it is where a Gaussian is cut. The flow at points has b = 0 there, and a_ref is of the spheres
+ * alone, which is why it has k^2/6.
  * Source: our own; the exponential is the window of Barnett, Magland & af Klinteberg 2019. */
 #ifndef SD_RADIAL_H
 #define SD_RADIAL_H

@@ -92,10 +92,10 @@ static void split(sd_ewald *e, const splitting *by, double *near)
     *near = fmin(t, sd_splitting_beyond(e, by, *near));
   }
   e->points = sd_splitting_points_of(by, e->tolerance, e->xi * y, t) + by->tall;
-  e->beta = sd_splitting_beta(by) * e->points;
+  e->beta = sd_splitting_beta(by, e->points);
   e->spacing = sd_splitting_spacing(e, by, *near, y);
   while (by->fall == BAND && e->points < SD_WINDOW_MOST_POINTS && sd_splitting_common_flow(e) > COMMON * e->tolerance)
-    e->beta = sd_splitting_beta(by) * ++e->points;
+    e->beta = sd_splitting_beta(by, ++e->points);
   e->reach = e->range;
 }
 
@@ -147,8 +147,8 @@ static void end_at_band(sd_ewald *e, const splitting *by, double near)
     e->range = fmax(shorter * (sd_splitting_band_spacings(&e->box, by, near) / spacings), least_range(e, by, y));
   }
   e->reach = e->range;
-  e->xi = y / e->range;
-  e->band = 2.0 * e->xi * y;
+  e->band = 2.0 * y * y / e->range;
+  e->xi = sd_splitting_xi(e);
   e->sized = 1;
 }
 
@@ -166,7 +166,7 @@ static void widen_windows(sd_ewald *e, const splitting *by)
   const int more = e->points + (int) rint(4.0 * log10(e->spacing / finest)), room = fewest - 2;
   const int most = room < SD_WINDOW_MOST_POINTS ? room : SD_WINDOW_MOST_POINTS;
   e->points = more < most ? more : most;
-  e->beta = sd_splitting_beta(by) * e->points;
+  e->beta = sd_splitting_beta(by, e->points);
 }
 
 static sd_status level_of(sd_ewald *e, const splitting *by)

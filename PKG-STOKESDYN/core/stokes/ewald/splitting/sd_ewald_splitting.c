@@ -168,6 +168,18 @@ static double band_over_shortest(const splitting *by, double t)
   return ((by->five ? 0.93 : by->slopes ? 0.98 : 0.96) - 0.01 * log10(1.0 / t)) / sd_splitting_finer(by);
 }
 
+/* What is left at r goes like j_1(s)/s times exp(-K R'), s^2 = K^2 (r^2 - R'^2), R' of sd_radial.h. Up to s = 3 that
+ * falls to a third, so that R' is a little less than the range: of equal spheres s^2 there is this. By integration it is
+ * 10 with which the rms of what is left is least, for KR from 6 to 27 and K a up to 1.5, where it is 0.5 to 0.7 of that
+ * with R' = R; less for larger K a, and 0 for 3. With 8 the rms is nearly the same, and less of it is alike. Noise keeps
+ * R' = R, with which both parts are positive (sd_ewald_choose_positive). */
+double sd_splitting_xi(const sd_ewald *e)
+{
+  const double KR = e->band * e->range, Ka = e->band * e->a_ref;
+  const double s2 = e->a_ref == e->largest && e->positive == 0.0 ? 8.0 * fmax(0.0, 1.0 - pow(Ka / 3.0, 3.0)) : 0.0;
+  return sqrt(0.5 * e->band / e->range) * pow(1.0 - s2 / (KR * KR), -0.25);
+}
+
 /* H is like that of a Gaussian for long waves: y^2 is half of band times range. */
 double sd_splitting_y(const sd_ewald_box *box, const splitting *by, double t)
 {
@@ -203,16 +215,17 @@ int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, d
   return whole_points(2.0 + log10(1.0 / t) + slower + heights + few + large);
 }
 
-/* Of the window over its points: where it is differentiated its jump at the ends must be smaller; twice for
- * unlike radii. Above a wall of an open box windows have more points, so that the jump is far below the tolerance; and
- * what they mistake of short waves, which a smaller beta makes less, is multiplied by heights. */
-double sd_splitting_beta(const splitting *by)
+/* The jump at the ends of a window is 1/I_0(beta) = exp(-beta) sqrt(2 pi beta), and falls by a digit a point as the
+ * tolerance does. Where windows are differentiated it must be smaller; twice for unlike radii. Above a wall of an open
+ * box windows have more points, so that the jump is far below the tolerance; and what they mistake of short waves, which
+ * a smaller beta makes less, is multiplied by heights. */
+double sd_splitting_beta(const splitting *by, int points)
 {
-  if (equal_turn(by)) return 2.3;
-  if (by->five) return 2.5;
-  if (by->at_wall) return 2.25;
-  if (by->equal && sd_splitting_finer(by) > 1.0) return 2.3;
-  return (by->fall == BAND ? !by->equal : by->slopes) ? 2.42 : 2.25;
+  if (equal_turn(by)) return 2.3 * points;
+  if (by->five) return 2.5 * points;
+  if (by->at_wall) return 2.25 * points;
+  if (by->fall == BAND && by->equal) return sd_splitting_finer(by) > 1.0 ? 2.3 * points : log(10.0) * points - 0.8;
+  return (by->fall == BAND || by->slopes ? 2.42 : 2.25) * points;
 }
 
 /* Windows of five points stand in one vector of floats, and those of six in two. The loss by large spheres above is for
@@ -295,7 +308,7 @@ static double mistaken_of_layer(const sd_ewald *e, double bend, double thick, do
   double sum = 0.0;
   for (double k = first; k < K; k += dk) {
     const double k2 = k * k, theta = k * h, w = wave_of_window(e, theta);
-    const double x = e->range * k2 / (K + sqrt(K * K - k2)), H = (1.0 + x - a * a * k2 / 3.0) * exp(-x);
+    const double x = 0.5 * K / (e->xi * e->xi) * k2 / (K + sqrt(K * K - k2)), H = (1.0 + x - a * a * k2 / 3.0) * exp(-x);
     const double half = 0.5 * k * thick, spread = half < 1e-6 ? 1.0 : sin(half) / half;
     sum += spread * H / k2 * (aliases(e, theta) - c * w - d * bend_of_window(e, theta)) / w * dk;
   }

@@ -42,6 +42,9 @@ double sd_splitting_beyond(const sd_ewald *e, const splitting *by, double t);
 double sd_splitting_y(const sd_ewald_box *box, const splitting *by, double t);
 double sd_splitting_gaussian_y(const sd_ewald_box *box, double t);
 
+/* Of a band, xi with which H leaves least beyond the range */
+double sd_splitting_xi(const sd_ewald *e);
+
 /* The range of a band in spacings. And the largest spacing, for e->xi and e->range; that of a Gaussian */
 double sd_splitting_band_spacings(const sd_ewald_box *box, const splitting *by, double t);
 double sd_splitting_spacing(const sd_ewald *e, const splitting *by, double t, double y);
@@ -50,10 +53,10 @@ double sd_splitting_gaussian_spacing(double xi, double y);
 /* How much finer the grid is where windows mistake more than elsewhere: range and band stay */
 double sd_splitting_finer(const splitting *by);
 
-/* The window: its points, and beta over these */
+/* The window: its points, and beta for these */
 int sd_splitting_points(double t);
 int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, double t);
-double sd_splitting_beta(const splitting *by);
+double sd_splitting_beta(const splitting *by, int points);
 
 /* Between two walls: is the range not much shorter than the gap? */
 int sd_splitting_narrow(const sd_ewald *e, const splitting *by);

@@ -82,6 +82,7 @@ static sd_ewald at_points(double digits)
 {
   sd_ewald e = {.range = 2.3, .a_ref = 0.7};
   e.band = 0.95 * SD_PI * (digits - 0.5) / e.range;
+  e.xi = sqrt(0.5 * e.band / e.range);
   return e;
 }
 
