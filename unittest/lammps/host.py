@@ -127,6 +127,22 @@ def one_at_a_time():
     return ["flock", "--close", os.path.join(tempfile.gettempdir(), f"stokesdyn-tests-mpirun-{os.getuid()}")]
 
 
+@functools.lru_cache(maxsize=None)
+def threads_rest():
+    """The library of threads_rest.c, without which a short run of Open MPI's on busy cores may end by signal 11"""
+    library = os.path.join(scratch(), "threads_rest.so")
+    source = os.path.join(os.path.dirname(os.path.abspath(__file__)), "threads_rest.c")
+    subprocess.run(["cc", "-O1", "-shared", "-fPIC", "-o", library, source, "-ldl"], check=True)
+    return library
+
+
+def preloaded():
+    """What ranks of Open MPI load before all else, as words of its mpirun"""
+    if family() != "Open MPI":
+        return []
+    return ["-x", " ".join([f"LD_PRELOAD={threads_rest()}", *filter(None, [os.environ.get("LD_PRELOAD")])])]
+
+
 def mpirun(ranks):
     """The words before a program that runs on so many ranks"""
     if ranks == 1:
@@ -135,4 +151,4 @@ def mpirun(ranks):
                              f"or mark the test: ranks({ranks})")
     assert not undeclared, (f"this test uses {ranks} ranks, and neither a name in its code nor a mark says so: "
                             f"@pytest.mark.ranks({ranks})")
-    return one_at_a_time() + launcher() + ["-np", str(ranks)]
+    return one_at_a_time() + launcher() + preloaded() + ["-np", str(ranks)]

@@ -7,6 +7,7 @@ import pytest
 
 import host
 from conftest import names
+from system import lmp
 
 
 @pytest.fixture
@@ -84,3 +85,13 @@ def test_scenes_that_differ_in_the_core_alone_are_asked_mpich_once(monkeypatch, 
                          (host.by_open_mpi([(1, 2), (3, 4), (5, 6)], several=True), [(1, 2), (3, 4), (5, 6)])):
         assert [one.values for one in some] == values and not some[0].marks
         assert sum(mark.args[0] for one in some for mark in one.marks) == left_out
+
+
+@pytest.mark.ranks(2)
+def test_a_run_that_is_over_before_a_thread_of_open_mpi_had_a_core(tmp_path, monkeypatch):
+    """Without threads_rest.c five of six such runs end by signal 11."""
+    late = os.path.join(os.path.dirname(host.__file__), "late_thread.c")
+    subprocess.run(["cc", "-shared", "-fPIC", "-o", tmp_path / "late.so", late, "-ldl"], check=True)
+    monkeypatch.setenv("LD_PRELOAD", str(tmp_path / "late.so"))
+    run = lmp(tmp_path, ["region b block 0 5 0 5 0 5", "create_box 1 b", "mass 1 1", "run 0"], 2)
+    assert "Total wall time" in run.text
