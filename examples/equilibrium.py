@@ -5,11 +5,11 @@ import os
 import subprocess
 import sys
 
-from runs import TOP, np
+from runs import RESULTS, TOP, np
 
 
 def library():
-    source, target = TOP / "examples" / "equilibrium.c", TOP / "build" / "examples" / "equilibrium.so"
+    source, target = TOP / "examples" / "equilibrium.c", RESULTS / "equilibrium.so"
     if not target.exists() or target.stat().st_mtime < source.stat().st_mtime:
         target.parent.mkdir(parents=True, exist_ok=True)
         made = target.with_suffix(f".{os.getpid()}")

@@ -2,6 +2,7 @@
 # Command 1 of the README: set-up (packages, LAMMPS, plugin), then examples. From any folder, with
 # nothing set beforehand.
 #   run.sh              examples/sedimentation; tables and pictures go to build/examples/sedimentation
+#                       (STOKESDYN_BUILD/examples if that names another folder for the build)
 #   run.sh --update     also refreshes those that are kept in examples/sedimentation
 #   run.sh all          every example, one after the other, and a table of their figures at the end; exits with 1 when
 #                       one is missed
@@ -31,13 +32,15 @@ for name in "${names[@]}"; do
   case $name in first_look | clump_resistance) ;; *) what=all ;; esac
 done
 "$top/cmake/setup.sh" $what
-. "$top/build/env.sh"
+STOKESDYN_BUILD=$(cd "${STOKESDYN_BUILD:-$top/build}" && pwd)    # the examples write there
+export STOKESDYN_BUILD
+. "$STOKESDYN_BUILD/env.sh"
 
 # The pictures that an example has made: those that it keeps beside its README have the same names.
 look_at() {
   local picture found=""
   for picture in "$here/$1"/*.png "$here/$1"/*.gif; do
-    picture=$top/build/examples/$1/$(basename "$picture")
+    picture=$STOKESDYN_BUILD/examples/$1/$(basename "$picture")
     if [ -f "$picture" ]; then found="$found ${picture#"$PWD"/}"; fi
   done
   if [ -n "$found" ]; then echo "Look at:$found"; fi
@@ -57,10 +60,10 @@ fi
 
 # Each run.py ends with lines "ok" and "MISSED" (checks.py) and exits with 1 when a figure is missed, with 1 as well
 # when it fails.
-mkdir -p "$top/build/examples"
+mkdir -p "$STOKESDYN_BUILD/examples"
 table="" bad=0
 for name in "${names[@]}"; do
-  log=$top/build/examples/$name.log began=$SECONDS status=0
+  log=$STOKESDYN_BUILD/examples/$name.log began=$SECONDS status=0
   echo "[$name]"
   "$python" "$here/$name/run.py" 2>&1 < /dev/null | tee "$log" || status=1
   ok=$(grep -c "^ok  " "$log" || true) missed=$(grep -c "^MISSED  " "$log" || true) remark=""

@@ -16,9 +16,11 @@ import time
 import other_python
 
 TOP = pathlib.Path(__file__).resolve().parents[1]
+# in the folder of the build, whose name is that of cmake/setup.sh
+RESULTS = pathlib.Path(os.environ.get("STOKESDYN_BUILD", TOP / "build")).resolve() / "examples"
 
 # matplotlib keeps its font list here, since a bare environment has no home; once written it is used again.
-os.environ.setdefault("MPLCONFIGDIR", str(TOP / "build" / "examples" / "matplotlib"))
+os.environ.setdefault("MPLCONFIGDIR", str(RESULTS / "matplotlib"))
 
 other_python.unless("numpy", "matplotlib")
 import matplotlib        # noqa: E402
@@ -43,7 +45,7 @@ def options(script, text, **more):
     defaults."""
     name = pathlib.Path(script).resolve().parent.name
     parser = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=pathlib.Path, default=TOP / "build" / "examples" / name)
+    parser.add_argument("--out", type=pathlib.Path, default=RESULTS / name)
     parser.add_argument("--update", action="store_true")
     for key, default in more.items():
         how = dict(action="store_true") if default is False else dict(type=type(default), default=default)

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 from checks import Checks  # noqa: F401
-from runs import listening, np, plt, TOP
+from runs import listening, np, plt, RESULTS, TOP
 
 QUICK = "--quick" in sys.argv
 
@@ -15,7 +15,7 @@ QUICK = "--quick" in sys.argv
 def lmp(folder, name, tag, **variables):
     """Runs folder/in.name with lmp from the PATH (. build/env.sh) in build/examples/<name>; returns the thermo table:
     columns by name."""
-    out = os.path.join(TOP, "build", "examples", name)
+    out = os.path.join(RESULTS, name)
     os.makedirs(out, exist_ok=True)
     log = "log.%s.%s" % (name, tag)
     command = ["lmp", "-in", os.path.join(folder, "in." + name), "-log", log, "-screen", "none", "-nocite"]

@@ -5,5 +5,6 @@
 # Sets everything up when the program is not there yet.
 set -euo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-[ -x "$top/build/clump_resistance" ] || "$top/cmake/setup.sh" core >&2
-exec "$top/build/clump_resistance" "$@"
+build=${STOKESDYN_BUILD:-$top/build}
+[ -x "$build/clump_resistance" ] || "$top/cmake/setup.sh" core >&2
+exec "$build/clump_resistance" "$@"

@@ -15,7 +15,7 @@ import sys
 folder = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(folder))
 import sph_runs as S  # noqa: E402
-from runs import np, TOP  # noqa: E402
+from runs import np, RESULTS, TOP  # noqa: E402
 
 c, plt = S.Checks(), S.pyplot()
 sizes = [int(word) for word in sys.argv[1:] if word.isdigit()] or [10]
@@ -27,7 +27,7 @@ FINE = {"arrival": 0.03, "load": 0.15, "face": 0.3, "H2": 0.05, "H4": 0.05}
 SENSORS = ("P1", "P2", "P3", "P4")
 PATCHES = {"L1": ("P1",), "L2": ("P2", "P3"), "L3": ("P4",)}
 PATCH_OF = {sensor: patch for patch, sensors in PATCHES.items() for sensor in sensors}
-OUT = os.path.join(TOP, "build", "examples", "dam_break_3d")
+OUT = os.path.join(RESULTS, "dam_break_3d")
 
 
 def measurement(name):

@@ -85,7 +85,7 @@ for axis, (asked, found, shot) in zip(axes[1], angles):
     axis.set(title="%g asked, %.0f" % (asked, found), xlim=(-1.9, 1.9), ylim=(-0.4, 1.8))
 for axis in axes.flat:
     axis.set(aspect="equal", xticks=[], yticks=[])
-out = os.path.join(os.path.dirname(os.path.dirname(folder)), "build", "examples", "drops")
+out = os.path.join(S.RESULTS, "drops")
 figure.tight_layout()
 broken, axes = plt.subplots(4, 1, figsize=(6, 5))
 for axis, shot in zip(axes, [shots[k] for k in (0, 8, 12, 16)]):

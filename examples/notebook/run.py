@@ -4,26 +4,19 @@ picture.
 
     run.py [--out FOLDER] [--update]     --update: also refreshes the picture in this folder
 """
-import argparse
 import json
 import pathlib
 import shutil
 import sys
 
-import matplotlib
-
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+import runs  # noqa: E402
 from checks import Checks  # noqa: E402
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=pathlib.Path, default=HERE.parents[1] / "build" / "examples" / "notebook")
-    parser.add_argument("--update", action="store_true")
-    options = parser.parse_args()
-    options.out.mkdir(parents=True, exist_ok=True)
-    matplotlib.use("Agg")
+    options = runs.options(__file__, __doc__)
 
     names = {}
     cells = json.loads((HERE / "two_lammps.ipynb").read_text())["cells"]

@@ -3,17 +3,16 @@
 
     run.py [--out FOLDER] [--update]     --update: also refreshes picture and notebook in this folder
 """
-import argparse
 import json
 import pathlib
 import re
 import sys
 
-import matplotlib
 import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+import runs  # noqa: E402
 from checks import Checks  # noqa: E402
 
 
@@ -33,12 +32,7 @@ def notebook():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=pathlib.Path, default=HERE.parents[1] / "build" / "examples" / "python_clump")
-    parser.add_argument("--update", action="store_true")
-    options = parser.parse_args()
-    options.out.mkdir(parents=True, exist_ok=True)
-    matplotlib.use("Agg")
+    options = runs.options(__file__, __doc__)
 
     cells = {}
     exec(compile((HERE / "clump.py").read_text(), "clump.py", "exec"), cells)

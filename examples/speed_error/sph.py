@@ -90,7 +90,7 @@ def check(c, rows):
 
 def main():
     c, rows = S.Checks(), measure()
-    out = os.path.join(S.TOP, "build", "examples", "speed_error")
+    out = os.path.join(S.RESULTS, "speed_error")
     os.makedirs(out, exist_ok=True)
     picture(rows, os.path.join(out, "sph.png"))
     check(c, rows)

@@ -97,7 +97,7 @@ def main():
         table += "| %s%s | %s | %d | %s | %.3g |\n" % (name.replace("_", " "),
                                                        "".join(", %s %g" % item for item in more.items()), option, n,
                                                      words, got["seconds"])
-    out = os.path.join(S.TOP, "build", "examples", "sph_order")
+    out = os.path.join(S.RESULTS, "sph_order")
     os.makedirs(out, exist_ok=True)
     S.keep(folder, out, None, table)
     return c.finish()

@@ -105,3 +105,35 @@ def test_without_a_compiler_the_package_is_named(tmp_path):
     said = run(["cmake", "-S", TOP / "cmake", "-B", tmp_path / "build"], tmp_path, PATH=str(tmp_path / "bin"), CC="",
                CXX="")
     assert "There is no C compiler" in said and "apt-get install build-essential" in said
+
+
+PROBE = """import os, sys
+sys.path.insert(0, os.environ["PROBE"])
+import checks, runs
+out = runs.options(__file__, "").out
+(out / "probe.png").write_text("a picture")
+c = checks.Checks()
+c.holds(f"written to {out}", True)
+sys.exit(c.finish())
+"""
+
+
+def test_examples_run_and_write_in_the_folder_of_the_build_that_is_named(tmp_path):
+    """As in a clone where one may not write; of the set-up there is no more than the env.sh that it leaves."""
+    examples, build = tmp_path / "a clone" / "examples", tmp_path / "a build"
+    (examples / "probe").mkdir(parents=True)
+    for name in ("run.sh", "runs.py", "other_python.py", "checks.py"):
+        shutil.copy(TOP / "examples" / name, examples)
+    (examples / "probe" / "run.py").write_text(PROBE)
+    (examples / "probe" / "probe.png").write_text("the one that is kept")
+    setup = tmp_path / "a clone" / "cmake" / "setup.sh"
+    setup.parent.mkdir()
+    setup.write_text('mkdir -p "$STOKESDYN_BUILD"\n'
+                     f"echo 'export PROBE=\"{examples}\"' > \"$STOKESDYN_BUILD/env.sh\"\n")
+    setup.chmod(0o755)
+    done = subprocess.run([str(examples / "run.sh"), "probe"], cwd=tmp_path, capture_output=True, text=True,
+                          env=dict(os.environ, STOKESDYN_BUILD="a build"), timeout=PATIENCE)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert f"ok      written to {build}/examples/probe\n" in done.stdout
+    assert "Look at: a build/examples/probe/probe.png" in done.stdout.replace(f"{tmp_path}/", "")
+    assert not (tmp_path / "a clone" / "build").exists() and (build / "examples" / "probe.log").exists()
