@@ -38,9 +38,8 @@ static void pore_length(const sd_vans_mesh *mesh, const sd_vans_fluid *fluid, co
   const double *phi = now->phi;
   for (int n = 0; n < mesh->ncell; n++) {
     const bulk grains = bulk_of_slice(mesh, fluid, now, n);
-    /* volume of pores over surface of grains; phi below 1e-3 is clear water */
-    pore[n] = (1.0 - phi[n]) / fmax(phi[n], 1e-3);
-    if (grains.S > 0.0) pore[n] *= grains.V / grains.S;
+    /* volume of pores over surface of grains; phi below 1e-3 is clear water; no bound without grains */
+    pore[n] = grains.S > 0.0 ? (1.0 - phi[n]) / fmax(phi[n], 1e-3) * (grains.V / grains.S) : HUGE_VAL;
     if (D) D[n] = grains.S > 0.0 ? 6.0 * grains.V / grains.S : 0.0;
   }
 }

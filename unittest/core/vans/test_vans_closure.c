@@ -53,6 +53,29 @@ static void mixing_lengths(void **state)
   column_free(c);
 }
 
+/* The lengths over a bed, told in micrometres: clear water has no pores, so no number stands for theirs. */
+static void lengths_are_the_same_in_any_unit(void **state)
+{
+  (void) state;
+  enum { N = 51 };
+  const double unit[2] = {1.0, 1e6};
+  const sd_vans_turbulence laws[2] = {SD_VANS_PORE, SD_VANS_NI_CAPART};
+  for (int law = 0; law < 2; law++) {
+    double length[2][N];
+    for (int u = 0; u < 2; u++) {
+      column *c = column_create(N, 0.5 * unit[u], 0.0);
+      const sd_vans_fluid fluid = {.kappa = 0.4, .phi_max = 0.6, .phi_bed = 0.1, .radius = 0.003 * unit[u],
+                                   .turbulence = laws[law]};
+      for (int n = 0; n < 20; n++) c->phi[n] = 0.62;
+      find_lengths(c, &fluid, NULL);
+      for (int j = 0; j < N; j++) length[u][j] = c->length[j] / unit[u];
+      column_free(c);
+    }
+    for (int j = 0; j < N; j++) assert_true(fabs(length[1][j] - length[0][j]) < 1e-12);
+    assert_true(length[1][N - 1] > 0.4 * 0.29);
+  }
+}
+
 /* With bed_mixing C no length is below C diameters at a node with grains on either side, of their mean diameter where
  * there are two sizes; elsewhere, and on the bottom, the law stands. Between narrow walls the width has the last
  * word. */
@@ -204,6 +227,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(mixing_lengths),
+      cmocka_unit_test(lengths_are_the_same_in_any_unit),
       cmocka_unit_test(lengths_among_grains),
       cmocka_unit_test(effective_viscosities),
       cmocka_unit_test(the_lowest_slice_is_measured_by_its_own_stress),
