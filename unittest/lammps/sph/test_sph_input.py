@@ -153,6 +153,7 @@ AT_RUN = {
                       "atom 1 is integrated twice, by fix more of style move and by another fix"),
     "integrated by two styles": (PAIR + MOVE + "fix more all nve", "integrated twice, by fix more of style nve"),
     "rerun": (PAIR + MOVE + "dump d all atom 1 {dump}\nrun 1\nrerun {dump} dump x y z", "cannot be used with rerun"),
+    "not prepared": (PAIR + MOVE + "run 1\nwrite_data {dump}\nrun 1 pre no", "nor with 'pre no' after write_data"),
     "stop": (PAIR.replace("* *", "* * c 20") + MOVE + "timestep 0.1\nfix c all check/timestep/sph 1 0.3 stop",
              "more than 0.3"),
 }

@@ -78,6 +78,22 @@ def test_a_run_that_is_not_prepared_misses_what_keywords_name(simulation, name):
         sim.command("run 1 pre no")
 
 
+@pytest.mark.parametrize("scheme", ["ab2", "midpoint"])
+@pytest.mark.parametrize("command", ["write_data", "write_restart"])
+def test_a_file_between_runs_loses_no_step(simulation, tmp_path, command, scheme):
+    """LAMMPS begins anew to write it: the first step of a run with 'pre no' then moved nobody."""
+    def fall(between, pre):
+        sim = simulation(four(), STYLE, box=[(-9, 9)] * 3, fix=False, dt=0.01)
+        sim.commands(f"fix pull all addforce 0 0 -1\n{MOVES} scheme {scheme}").run(2)
+        sim.commands(between).command(f"run 3 {pre}")
+        return sim.x
+
+    write = f"{command} {tmp_path}/file"
+    assert np.abs(fall(write, "pre yes") - fall("", "pre no")).max() < 1e-12
+    with pytest.raises(LammpsError, match="leave out 'pre no' of the run command"):
+        fall(write, "pre no")
+
+
 @pytest.mark.parametrize("ids", ["1", "2 4"])
 def test_values_of_the_fix_without_inertia_when_atoms_have_other_indices(simulation, ids):
     """Dissipation and largest speed are those of the last step, and the smallest gap that of who is there now."""
