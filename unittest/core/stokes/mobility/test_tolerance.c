@@ -66,6 +66,11 @@ static void short_waves_of_images_above_a_wall(void **state)
   const wish unlike = {.most = 120, .kind = MANY_SIZES, .place = -1, .spread = CLUSTERS, .loosest = 1, .tightest = 12};
   keeps_it(48752, 48, &unlike);
   keeps_it(48752, 331, &unlike);
+  /* On one plane: 3.21 and 1.16, 1.83 and 1.13 with a beta of 2.25 points; 4.4 with 2.05 points at 1e-12 */
+  const wish plane = {.most = 100, .kind = EQUAL, .place = ABOVE_WALL, .spread = PLANE, .loosest = 1, .tightest = 12};
+  const int first[] = {10, 32}, second[] = {12, 26, 42};
+  for (int k = 0; k < 2; k++) keeps_it(48902, first[k], &plane);
+  for (int k = 0; k < 3; k++) keeps_it(48903, second[k], &plane);
 }
 
 /* Spheres on one plane have the same place on the grid across it, and what their windows mistake adds up under equal

@@ -218,12 +218,13 @@ int sd_splitting_points_of(const splitting *by, double tolerance, double xi_y, d
 /* The jump at the ends of a window is 1/I_0(beta) = exp(-beta) sqrt(2 pi beta), and falls by a digit a point as the
  * tolerance does. Where windows are differentiated it must be smaller; twice for unlike radii. Above a wall of an open
  * box windows have more points, so that the jump is far below the tolerance; and what they mistake of short waves, which
- * a smaller beta makes less, is multiplied by heights. */
+ * a smaller beta makes less, is multiplied by heights: of equal spheres, which may stand on one plane, beta is so small
+ * that the jump, too, still falls by a digit a point. */
 double sd_splitting_beta(const splitting *by, int points)
 {
   if (equal_turn(by)) return 2.3 * points;
   if (by->five) return 2.5 * points;
-  if (by->at_wall) return 2.25 * points;
+  if (by->at_wall) return by->equal ? fmax(2.05 * points, log(10.0) * points - 3.0) : 2.25 * points;
   if (by->fall == BAND && by->equal) return sd_splitting_finer(by) > 1.0 ? 2.3 * points : log(10.0) * points - 0.8;
   return (by->fall == BAND || by->slopes ? 2.42 : 2.25) * points;
 }
