@@ -122,7 +122,6 @@ class FixHydroVans : public RowsFix {
   void find_names();
 
   void select(int bit, bool not_in_group = false);
-  bool in_region(const double *at) const;
   sd_vans_grains grains();
   int forces(const sd_vans_grains &all, bool accelerated = false);
   /* What a call of post_force is: a step after the last one, the step once more with which a run begins where

@@ -1,9 +1,9 @@
 #include "fix_hydro_vans.h"
 
+#include "places.h"
 #include "ranks.h"
 
 #include "atom.h"
-#include "domain.h"
 #include "region.h"
 #include "update.h"
 
@@ -27,22 +27,11 @@ void FixHydroVans::select(int bit, bool not_in_group)
                          text(atom->radius[i]) + "; it must be a number > 0, or 0 for what is no grain");
     take[i] = (atom->mask[i] & bit) && atom->radius[i] > 0.0 &&
         !(not_in_group && (atom->mask[i] & groupbit));
-    if (take[i] && region) take[i] = in_region(atom->x[i]);
+    if (!take[i] || !region) continue;
+    double x[3];
+    image_in_box(domain, atom->x[i], x);
+    take[i] = region->match(x[0], x[1], x[2]) != 0;
   }
-}
-
-/* By the place in the box, as LAMMPS wraps a grain only when it re-neighbours. remap() goes box by box: not for one
- * that has blown up. */
-bool FixHydroVans::in_region(const double *at) const
-{
-  double x[3];
-  bool near = true;
-  for (int d = 0; d < 3; d++) {
-    x[d] = at[d];
-    near = near && fabs(x[d] - domain->boxlo[d]) < 10.0 * (domain->xprd + domain->yprd + domain->zprd);
-  }
-  if (near) domain->remap(x);
-  return region->match(x[0], x[1], x[2]) != 0;
 }
 
 /* The atoms of this rank, those that `take` says. */

@@ -4,6 +4,7 @@
 #include "deform_checks.h"
 #include "keywords.h"
 #include "lammps_compat.h"
+#include "places.h"
 #include "ranks.h"
 
 #include "atom.h"
@@ -176,25 +177,11 @@ std::vector<double> Ambient::velocity_at(const std::function<void(int, double *)
   sd_flow_grid_frame(&settings.grid->grid, now, &frame);    // read_grid() has looked at the time
   for (size_t i : those) {
     double x[3], value[4];
-    in_the_box((int) i, x);
+    image_in_box(domain, atom->x[i], x);
     sd_flow_grid_at(&settings.grid->grid, &frame, 1, x, value, nullptr);
     std::copy_n(value, 3, &values[3 * i]);
   }
   return values;
-}
-
-/* An atom and its images are one place, and where LAMMPS keeps it depends on when it last looked.
- * Nearly all are inside, so that there is no branch for each side. */
-inline void Ambient::in_the_box(int i, double *x) const
-{
-  const double *from = atom->x[i], *lo = domain->boxlo, *hi = domain->boxhi;
-  bool inside = !domain->triclinic;
-  for (int d = 0; d < 3; d++) {
-    inside &= (from[d] >= lo[d]) & (from[d] < hi[d]);
-    x[d] = from[d];
-  }
-  // remap() goes box by box, for ever if x is infinite: fault() tells of those
-  if (!inside && finite(x) && !far_out(i)) domain->remap(x);
 }
 
 /* Velocity, viscosity and gradient of those that take part. Where the grid has none they are NaN,
@@ -217,7 +204,7 @@ void Ambient::read_grid()
   const bool with_gradients = !w.empty();
   for (size_t begin = 0; begin < those.size(); begin += BLOCK) {
     const size_t count = std::min(BLOCK, those.size() - begin);
-    for (size_t k = 0; k < count; k++) in_the_box(those[begin + k], x + 3 * k);
+    for (size_t k = 0; k < count; k++) image_in_box(domain, atom->x[those[begin + k]], x + 3 * k);
     sd_flow_grid_at(&grid, &frame, (int) count, x, value, with_gradients ? G : nullptr);
     for (size_t k = 0; k < count; k++) {
       const size_t i = those[begin + k];
@@ -267,7 +254,7 @@ void Ambient::select()
   if (region) region->prematch();
   for (int i : members) {
     double x[3];
-    if (region) in_the_box(i, x);
+    if (region) image_in_box(domain, atom->x[i], x);
     // A position that is no number is in no region: it takes part, so that the fault is seen.
     if (!region || !std::isfinite(x[0] + x[1] + x[2]) || region->match(x[0], x[1], x[2]))
       chosen.push_back(i);
@@ -293,19 +280,6 @@ std::vector<char> Ambient::chosen_now()
 
 enum Fault { NONE, POSITION, FAR_OUT, VELOCITY, RADIUS, VISCOSITY, FLUID_VELOCITY, FLUID_VORTICITY };
 
-/* More than one length of a periodic box outside of it: LAMMPS wraps an atom by one length, and
- * between two wrappings it moves by half the skin in any run that means something. */
-bool Ambient::far_out(int i) const
-{
-  const double *lo = domain->triclinic ? domain->boxlo_bound : domain->boxlo;
-  const double *hi = domain->triclinic ? domain->boxhi_bound : domain->boxhi;
-  for (int d = 0; d < 3; d++)
-    if (domain->periodicity[d] && !(atom->x[i][d] >= lo[d] - domain->prd[d] &&
-                                    atom->x[i][d] <= hi[d] + domain->prd[d]))
-      return true;
-  return false;
-}
-
 int Ambient::fault(int i) const
 {
   // 0 times a number is 0 unless it is infinite or not a number: nearly always this one test is enough.
@@ -315,7 +289,7 @@ int Ambient::fault(int i) const
   if (spins) sum += atom->omega[i][0] + atom->omega[i][1] + atom->omega[i][2];
   const double *rotation = w.empty() ? nullptr : &w[3 * (size_t) i];
   if (rotation) sum += rotation[0] + rotation[1] + rotation[2];
-  if (0.0 * sum == 0.0 && a > 0.0 && viscosity(i) > 0.0) return far_out(i) ? FAR_OUT : NONE;
+  if (0.0 * sum == 0.0 && a > 0.0 && viscosity(i) > 0.0) return far_out(domain, atom->x[i]) ? FAR_OUT : NONE;
 
   // Velocity first: it spoils the position in the same step.
   if (!finite(v) || (spins && !finite(atom->omega[i]))) return VELOCITY;
@@ -350,7 +324,7 @@ void Ambient::complain(long long first) const
   for (int i : those)
     if (atom->tag[i] == first / 16 && fault(i) == first % 16) {
       mine[VALUE] = first % 16 == RADIUS ? atom->radius[i] : viscosity(i) / force->vxmu2f;
-      in_the_box(i, mine + PLACE);
+      image_in_box(domain, atom->x[i], mine + PLACE);
     }
   MPI_Allreduce(mine, sum, KNOWN, MPI_DOUBLE, MPI_SUM, world);
   const int fault = first % 16;

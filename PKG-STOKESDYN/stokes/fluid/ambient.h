@@ -216,9 +216,7 @@ class Ambient : protected LAMMPS_NS::Pointers {
   void read_vorticity();
   void read_curvature();
   void read_grid();
-  void in_the_box(int i, double *x) const;
   std::string outside_of_grid(const double *x) const;
-  bool far_out(int i) const;
   int fault(int i) const;
   [[noreturn]] void complain(long long first) const;
 };
